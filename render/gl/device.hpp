@@ -129,7 +129,7 @@ public:
     virtual void wait_slices(std::uint32_t in_flight) REQUIRES(draws) = 0;
     /// Draws the kept blended items, back to front, as the last slice.
     virtual void end_items() REQUIRES(draws) = 0;
-    /// Enlarges a frame below full resolution, waits for all slices; presents if there is a window.
+    /// Enlarges a frame below full resolution, and waits for all slices: the picture is whole.
     virtual void finish_frame() REQUIRES(draws) = 0;
 
     // ---- a picture at rest: drawn over several frames into a second target, while the shown picture stays; the same rules ----
@@ -143,8 +143,11 @@ public:
     virtual void add_sample(bool /*first*/) REQUIRES(draws) {}
     /// Makes the shown picture: the second one if `samples` is 1, else the mean of so many.
     virtual void show_rest(std::uint32_t /*samples*/) REQUIRES(draws) {}
-    /// Ends a frame at rest: waits for all slices, and presents the shown picture if there is a window.
+    /// Ends a frame at rest: waits for all slices. The shown picture is whole.
     virtual void finish_rest_frame() REQUIRES(draws) {}
+
+    /// Hands the shown picture to the window, if there is one. The driver may wait for the display. Nothing on a lost device.
+    virtual void present() REQUIRES(draws) {}
 
     [[nodiscard]] virtual FrameStats stats() const REQUIRES(draws) = 0;
     /// The context is lost: the GPU was reset or removed, or does not finish. Later frames were not shown. All calls are safe

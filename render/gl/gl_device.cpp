@@ -168,6 +168,7 @@ void GlDevice::warm_up_passes() {
         if (rest_support() == RestSupport::samples) show_rest(2);
         finish_rest_frame();
     }
+    present();
 }
 
 std::vector<std::string> GlDevice::program_listing() const {
@@ -210,7 +211,7 @@ void GlDevice::finish_frame() {
     end_slice();
     wait_slices(0);
     if (step_ > 0 && !lost_ && !enlargers_.empty()) enlarge_by_processor();
-    present();
+    look_for_reset();
 }
 
 void GlDevice::make_enlargers() {
@@ -248,9 +249,12 @@ void GlDevice::resolve_rest() {
     rest_resolved_ = true;
 }
 
+void GlDevice::look_for_reset() {
+    if (reset_status_ != nullptr && reset_status_() != GL_NO_ERROR) lost_ = true;
+}
+
 /// The shown target goes to the window, if there is one.
 void GlDevice::present() {
-    if (reset_status_ != nullptr && reset_status_() != GL_NO_ERROR) lost_ = true;
     if (lost_ || !context_->has_window()) return;
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_.steps.front().framebuffer);
     const auto w = static_cast<GLint>(options_.viewport.width);
@@ -305,7 +309,7 @@ void GlDevice::show_rest(std::uint32_t samples) {
 
 void GlDevice::finish_rest_frame() {
     wait_slices(0);
-    present();
+    look_for_reset();
 }
 
 Result<PixelImage> GlDevice::read_pixels() {

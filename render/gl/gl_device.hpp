@@ -50,6 +50,7 @@ public:
     void add_sample(bool first) override REQUIRES(draws);
     void show_rest(std::uint32_t samples) override REQUIRES(draws);
     void finish_rest_frame() override REQUIRES(draws);
+    void present() override REQUIRES(draws);
     [[nodiscard]] FrameStats stats() const override REQUIRES(draws) { return stats_; }
     [[nodiscard]] bool lost() const override REQUIRES(draws) { return lost_; }
     Result<PixelImage> read_pixels() override REQUIRES(draws);
@@ -86,7 +87,7 @@ private:
     void set_coverage(bool on) REQUIRES(draws);
     void clear_target() REQUIRES(draws);
     void draw_parts(std::span<const DrawItem> items, Parts parts) REQUIRES(draws);
-    void present() REQUIRES(draws);
+    void look_for_reset() REQUIRES(draws);
     [[nodiscard]] State state_of(const Pending& pending) const;
     void submit(std::span<Pending> sorted) REQUIRES(draws);
     void submit_blended() REQUIRES(draws);

@@ -15,7 +15,8 @@ namespace surefoot::rt {
 ///           frame starts there. The slots that it ran over are skipped whole. Latency is a whole number of periods.
 /// floating: (`float`) a late frame is shown when it is done, and the next frame starts at once, in the slot that has begun.
 ///           Only slots that have passed entirely are skipped.
-/// A frame that is in time is shown at its deadline (lock) or when done (floating); the next starts on the next grid point.
+/// A frame that is in time is shown at the end of its slot (lock) or when done (floating); the next starts on the next grid
+/// point.
 enum class LatePolicy : std::uint8_t { lock, floating };
 
 /// The clock of a walk: the machine's, or a virtual one that predicted costs advance.
@@ -33,7 +34,12 @@ enum class WalkingMode : std::uint8_t { automatic, walk, fly };
 /// the rest of its cut was drawn coarse. unprepared: no prepared set was new enough.
 enum class Guarantee : std::uint8_t { none, kept, over_budget, no_form, stand_ins, unprepared };
 
+/// Who tells when a picture was shown. display: the display itself. hand_over: it does not tell, so the time at which it was
+/// handed over stands for it. nothing: no picture was shown.
+enum class ShownBy : std::uint8_t { nothing, hand_over, display };
+
 /// In the enums' order.
+inline constexpr std::array<std::string_view, 3> shown_by_names = {"nothing", "hand-over", "display"};
 inline constexpr std::array<std::string_view, 6> guarantee_names = {"none",    "kept",      "over_budget",
                                                                     "no_form", "stand_ins", "unprepared"};
 inline constexpr std::array late_policies = {
@@ -59,6 +65,7 @@ inline constexpr std::array texture_filters = {
 };
 
 constexpr std::string_view name_of(Guarantee guarantee) { return guarantee_names[static_cast<std::size_t>(guarantee)]; }
+constexpr std::string_view name_of(ShownBy by) { return shown_by_names[static_cast<std::size_t>(by)]; }
 constexpr std::string_view name_of(LatePolicy late) { return late_policies[static_cast<std::size_t>(late)].name; }
 constexpr std::string_view name_of(ClockKind clock) { return clock_kinds[static_cast<std::size_t>(clock)].name; }
 constexpr std::string_view name_of(TextureFilter filter) { return texture_filters[static_cast<std::size_t>(filter)].name; }

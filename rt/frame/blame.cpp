@@ -42,7 +42,7 @@ std::array<Excess, 5> phase_causes(const FrameRecord& r, const BlameLimits& l) {
                                      {Cause::upload, over_share(r.upload_ns, l.upload_share, t)},
                                      {Cause::submit, over_share(r.submitted_ns - r.selected_ns - r.upload_ns, l.submit_share, t)},
                                      {Cause::raster, over_share(r.rastered_ns - r.submitted_ns, l.raster_share, t)},
-                                     {Cause::present, over_share(r.presented_ns - r.rastered_ns, l.present_share, t)}}};
+                                     {Cause::present, over_share(r.complete_ns - r.rastered_ns, l.present_share, t)}}};
     std::ranges::max_element(phases, {}, &Excess::over_ns)->over_ns -= r.stolen_ns + r.preempted_ns;
     return phases;
 }
@@ -55,7 +55,7 @@ Cause blame(const FrameRecord& record, const BlameLimits& limits) {
     if (!record.missed) return Cause::none;
     // A stop may fall into a wait, where no gap shows it: that it happened says enough.
     if (record.continued > 0) return Cause::stopped;
-    const std::int64_t late_ns = std::max<std::int64_t>(record.presented_ns - record.deadline_ns, 1);
+    const std::int64_t late_ns = std::max<std::int64_t>(record.complete_ns - record.deadline_ns, 1);
     const auto outside = outside_causes(record, limits);
     for (const Excess& e : outside) {
         if (e.over_ns >= late_ns) return e.cause;
@@ -71,13 +71,25 @@ Cause blame(const FrameRecord& record, const BlameLimits& limits) {
     return largest.cause;
 }
 
+bool is_shown_late(const FrameRecord& record, const BlameLimits& limits) {
+    return record.show_ns > 0 && over_share(record.presented_ns - record.show_ns, limits.present_share, limits.period_ns) > 0;
+}
+
+Cause blame_showing(const FrameRecord& record, std::int64_t woken_late_ns, std::int64_t lost_ns) {
+    if (record.continued > 0) return Cause::stopped;
+    const std::int64_t presenting_ns = record.presented_ns - record.handed_ns;
+    if (woken_late_ns >= presenting_ns) return Cause::woken_late;
+    if (2 * lost_ns < presenting_ns) return Cause::present;
+    return record.preempted_ns >= lost_ns ? Cause::preempted : Cause::stolen;
+}
+
 bool is_own_miss(const FrameRecord& record, const BlameLimits& limits) {
     if (!record.missed) return false;
     // A stop is a gap. If the thread was also switched out against its will, the whole gap counts as preempted.
     const bool stopped = record.continued > 0;
     const std::int64_t gap_ns = record.stolen_ns + (stopped ? record.preempted_ns : 0);
     const std::int64_t taken_ns = gap_ns + (limits.fifo || stopped ? wake_lateness_ns(record) : 0);
-    return record.presented_ns - taken_ns > record.deadline_ns;
+    return record.complete_ns - taken_ns > record.deadline_ns;
 }
 
 }  // namespace surefoot::rt

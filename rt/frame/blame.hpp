@@ -24,7 +24,7 @@ struct BlameLimits {
     double upload_share = 0.10;
     double submit_share = 0.40;  ///< without uploads
     double raster_share = 0.40;
-    double present_share = 0.05;
+    double present_share = 0.05;         ///< so much later than planned a picture may be shown, too
     std::int64_t minor_fault_ns = 1000;  ///< maximum cost of one: 0.25 us native to 2 us in a guest; see minor_fault_cost_ns()
     bool fifo = true;                    ///< the frame thread has SCHED_FIFO, so the platform causes late wake-ups
 };
@@ -33,6 +33,13 @@ struct BlameLimits {
 /// If several causes qualify: the most specific evidence (stopped, page_fault, preempted or stolen, woken_late), then the phase
 /// furthest over its share. If no single cause qualifies: the largest excess over a share.
 Cause blame(const FrameRecord& record, const BlameLimits& limits);
+
+/// Whether the picture was shown later than planned, by over present_share. Of a frame that waits for nothing, false.
+bool is_shown_late(const FrameRecord& record, const BlameLimits& limits);
+
+/// The cause of a picture that was whole in time and is_shown_late(): a stop of the process, a late wake-up for it, or what
+/// presenting took. woken_late_ns: for presenting; lost_ns: while presenting, without a wait for the display.
+Cause blame_showing(const FrameRecord& record, std::int64_t woken_late_ns, std::int64_t lost_ns);
 
 /// Whether the frame is late even without stolen time: stolen_ns, and a late wake-up under FIFO. After a stop of the process:
 /// every gap, and a late wake-up under any policy.

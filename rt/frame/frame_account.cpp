@@ -57,19 +57,23 @@ void FrameAccount::own_done(FrameRecord& record) {
     selected_ = clock_.usage();
 }
 
-void FrameAccount::driver_done(FrameRecord& record) {
-    // Read until no stop falls between the two: a stop is counted in the frame that it makes late. One that comes later makes the
-    // next frame wake late, and is counted there.
+/// Read until no stop falls between the two: a stop is counted in the frame that it makes late. One that comes later makes the
+/// next frame wake late, and is counted there.
+void FrameAccount::read_end(std::int64_t& now_ns, FrameRecord& record) {
     std::uint32_t continued = 0;
     do {
         continued = continues();
-        record.presented_ns = clock_.now_ns();
+        now_ns = clock_.now_ns();
     } while (continues() != continued);
-    record.continued = continued - continued_before_;
+    record.continued += continued - continued_before_;
     continued_before_ = continued;
+}
+
+void FrameAccount::driver_done(FrameRecord& record) {
+    read_end(record.complete_ns, record);
     ended_ = clock_.usage();
-    if (record.submitted_ns == 0) record.submitted_ns = record.presented_ns;
-    if (record.rastered_ns == 0) record.rastered_ns = record.presented_ns;
+    if (record.submitted_ns == 0) record.submitted_ns = record.complete_ns;
+    if (record.rastered_ns == 0) record.rastered_ns = record.complete_ns;
 }
 
 /// The wait for the display: that part of an unexplained voluntary wait by which presenting exceeded its share. After the last
@@ -77,7 +81,7 @@ void FrameAccount::driver_done(FrameRecord& record) {
 /// That part of a frame is short.
 std::int64_t FrameAccount::display_wait_ns(const FrameRecord& record, std::int64_t unexplained_ns) const {
     const auto share_ns = static_cast<std::int64_t>(limits_.present_share * static_cast<double>(limits_.period_ns));
-    return std::clamp<std::int64_t>(record.presented_ns - record.rastered_ns - share_ns, 0,
+    return std::clamp<std::int64_t>(record.complete_ns - record.rastered_ns - share_ns, 0,
                                     std::max<std::int64_t>(unexplained_ns, 0));
 }
 
@@ -93,7 +97,7 @@ void FrameAccount::close(FrameRecord& record) {
     // Own code never waits, so all of its gap was lost. The driver's phases wait for the rasterisers; the rest of their gap was
     // lost.
     const std::int64_t own_gap = std::max<std::int64_t>(record.selected_ns - begun_ns_ - own.cpu_ns, 0);
-    const std::int64_t wait = std::max<std::int64_t>(record.presented_ns - record.selected_ns - driver.cpu_ns, 0);
+    const std::int64_t wait = std::max<std::int64_t>(record.complete_ns - record.selected_ns - driver.cpu_ns, 0);
     record.waited_ns = estimate_.known_ns(wait, raster, driver.voluntary > 0);
     estimate_.update(wait, raster);
     if (driver.voluntary > 0 && frame.involuntary == 0) record.waited_ns += display_wait_ns(record, wait - record.waited_ns);
@@ -107,9 +111,39 @@ void FrameAccount::close(FrameRecord& record) {
     record.driver_faults = small(driver.minor_faults + driver.major_faults);
     before_ = ended_;
 
-    record.missed = record.presented_ns > record.deadline_ns;
+    record.missed = record.complete_ns > record.deadline_ns;
     record.own_miss = is_own_miss(record, limits_);
     record.cause = blame(record, limits_);
+}
+
+void FrameAccount::present_begins(FrameRecord& record, std::int64_t begins_ns) {
+    record.handed_ns = clock_.now_ns();
+    woken_late_ns_ = record.handed_ns - begins_ns;
+    handed_ = clock_.usage();
+}
+
+void FrameAccount::present_ended(FrameRecord& record, Shown shown) {
+    read_end(record.presented_ns, record);
+    const ThreadUsage driver = clock_.usage() - handed_;
+    record.shown_by = shown.by;
+    if (shown.by == ShownBy::display) record.shown_ns = shown.time_ns;
+    if (shown.by == ShownBy::hand_over) record.shown_ns = record.presented_ns;
+
+    // After the last fence a thread that sleeps in the driver waits for the display. All else of the gap was lost.
+    const std::int64_t gap = std::max<std::int64_t>(record.presented_ns - record.handed_ns - driver.cpu_ns, 0);
+    const bool waits = driver.voluntary > 0;
+    (waits ? record.waited_ns : driver.involuntary > 0 ? record.preempted_ns : record.stolen_ns) += gap;
+    record.voluntary += small(driver.voluntary);
+    record.involuntary += small(driver.involuntary);
+    record.driver_faults += small(driver.minor_faults + driver.major_faults);
+    before_ = before_ + driver;
+
+    if (record.missed || !is_shown_late(record, limits_)) return;
+    record.missed = true;
+    record.cause = blame_showing(record, woken_late_ns_, waits ? 0 : gap);
+    const bool outside =
+        record.cause == Cause::stolen || record.cause == Cause::stopped || (record.cause == Cause::woken_late && limits_.fifo);
+    record.own_miss = !outside;
 }
 
 void FrameAccount::before_push(FrameRecord& record) {

@@ -31,7 +31,8 @@ private:
     std::size_t count_ = 0, next_ = 0;
 };
 
-/// Called by the loop in the order: begin, own_done, driver_done, close, before_push.
+/// Called by the loop in the order: begin, own_done, driver_done, close, present_begins, present_ended, before_push. The two of
+/// presenting only where pictures are presented.
 class FrameAccount {
 public:
     FrameAccount(const FrameLoopOptions& options, Clock& clock);
@@ -40,17 +41,23 @@ public:
     void begin(FrameRecord& record);
     /// Sampled and selected: the driver's tier begins.
     void own_done(FrameRecord& record);
-    /// Presented: the frame is over.
+    /// The picture is whole.
     void driver_done(FrameRecord& record);
     /// Fills in usage, gap, waits; missed, own_miss and cause.
     void close(FrameRecord& record);
+    /// The time of showing has come, after close(). begins_ns: when the thread could have woken for it.
+    void present_begins(FrameRecord& record, std::int64_t begins_ns);
+    /// Presented. A picture that was whole in time but is shown late is a miss.
+    void present_ended(FrameRecord& record, Shown shown);
     /// Last: allocations since the last frame, those of the accounting stage included.
     void before_push(FrameRecord& record);
     /// CPU time of the frame on the frame core; the control burns as much.
     [[nodiscard]] std::int64_t core_cpu_ns() const { return core_cpu_ns_; }
+    [[nodiscard]] const BlameLimits& limits() const { return limits_; }
 
 private:
     std::uint32_t continues() const;
+    void read_end(std::int64_t& now_ns, FrameRecord& record);
     std::int64_t display_wait_ns(const FrameRecord& record, std::int64_t unexplained_ns) const;
 
     const FrameLoopOptions& options_;
@@ -59,8 +66,9 @@ private:
     ThreadClocks rasterisers_, on_core_;
     WaitEstimate estimate_;
     std::int64_t begun_ns_ = 0;
-    ThreadUsage begun_, selected_, ended_;
-    ThreadUsage before_;  ///< end of the last frame
+    std::int64_t woken_late_ns_ = 0;  ///< for presenting
+    ThreadUsage begun_, selected_, ended_, handed_;
+    ThreadUsage before_;  ///< end of the last frame; what presenting used since is added
     GuardCounters guard_before_;
     std::uint32_t continued_before_ = 0;
     std::int64_t core_cpu_ns_ = 0;

@@ -4,8 +4,11 @@
 #include <sched.h>
 #include <signal.h>
 
+#include <algorithm>
+
 #include "rt/base/check.hpp"
 #include "rt/frame/frame_account.hpp"
+#include "rt/frame/present_lead.hpp"
 #include "rt/threads/guard.hpp"
 
 namespace surefoot::rt {
@@ -17,6 +20,7 @@ struct LoopState {
     std::uint64_t slot = 0;
     std::uint32_t skipped_before = 0;
     std::int64_t ready_ns = 0;
+    std::int64_t lead_ns = 0;  ///< what presenting usually takes
     FrameLoopResult result;
 };
 
@@ -33,7 +37,7 @@ FrameRecord new_record(const FrameLoopOptions& o, const Grid& grid, const LoopSt
     record.frame = s.result.run;
     record.due_ns = grid.due_ns(s.slot);
     record.ready_ns = s.ready_ns;
-    record.deadline_ns = grid.deadline_ns(s.slot);
+    record.deadline_ns = grid.deadline_ns(s.slot) - s.lead_ns;
     record.skipped_before = s.skipped_before;
     if (o.control != nullptr) {
         record.block = o.control->block_of(s.slot);
@@ -66,6 +70,40 @@ void bare_frame(Clock& clock, std::int64_t burn_ns, FrameAccount& account, Frame
     account.close(record);
 }
 
+/// The picture waits for its time, and is shown. Bare frames wait as long, and are judged alike.
+void show(const FrameLoopOptions& o, const Grid& grid, Clock& clock, FrameStages& stages, FrameAccount& account,
+          std::int64_t lead_ns, FrameRecord& record) {
+    const std::int64_t shown_ns = record.complete_ns + lead_ns;  // if handed over now
+    std::int64_t begins_ns = clock.now_ns();
+    if (o.late == LatePolicy::lock) {
+        record.show_ns = next_slot(grid, o.late, record.slot, shown_ns).shown_ns;
+        if (const std::int64_t planned_ns = record.show_ns - lead_ns; planned_ns > begins_ns) {
+            clock.sleep_until_ns(planned_ns);
+            begins_ns = planned_ns;
+        }
+    } else {
+        record.show_ns = std::max(grid.deadline_ns(record.slot), shown_ns);
+    }
+    account.present_begins(record, begins_ns);
+    Shown shown;
+    if (!record.control) {
+        const DriverScope driver;
+        shown = stages.present(record);
+    }
+    account.present_ended(record, shown);
+}
+
+/// The end of the frame that the next slot is reckoned from.
+std::int64_t ended_ns(const FrameLoopOptions& o, const BlameLimits& limits, const FrameRecord& r) {
+    if (!o.shows) return r.complete_ns;
+    return o.late == LatePolicy::floating || is_shown_late(r, limits) ? r.presented_ns : r.show_ns;
+}
+
+/// What presenting took of the slot that begins at start_ns. A late wake-up for it is no part.
+std::int64_t taken_by_presenting_ns(const FrameRecord& r, std::int64_t start_ns) {
+    return r.presented_ns > start_ns ? std::max<std::int64_t>(0, r.presented_ns - std::max(r.handed_ns, r.show_ns)) : 0;
+}
+
 void hand_over(const FrameLoopOptions& o, const FrameRecord& record, SpscRing<FrameRecord>& records) {
     while (o.wait_for_ring && records.full()) sched_yield();
     records.try_push(record);
@@ -81,6 +119,7 @@ FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, Fr
     const OwnScope own;
     FrameAccount account(options, clock);
     BurnMeter burn;
+    PresentLead lead(options.period_ns);
     LoopState s;
     s.ready_ns = grid.t0_ns;
     while (goes_on(options, s)) {
@@ -92,14 +131,19 @@ FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, Fr
             walk_frame(clock, stages, account, record);
             burn.add(account.core_cpu_ns());
         }
+        if (options.shows) {
+            show(options, grid, clock, stages, account, s.lead_ns, record);
+            if (!record.control) lead.add(record.presented_ns - record.handed_ns);
+        }
         account.before_push(record);
         hand_over(options, record, records);
 
-        const NextSlot next = next_slot(grid, options.late, s.slot, record.presented_ns);
+        const NextSlot next = next_slot(grid, options.late, s.slot, ended_ns(options, account.limits(), record));
         CHECK(next.slot > s.slot, "The next slot comes after this one");
         s.slot = next.slot;
         s.skipped_before = next.skipped;
-        s.ready_ns = next.start_ns;
+        s.ready_ns = next.start_ns + taken_by_presenting_ns(record, next.start_ns);
+        s.lead_ns = lead.ns();
         ++s.result.run;
         s.result.skipped += next.skipped;
         s.result.elapsed = next.slot;

@@ -1,4 +1,5 @@
-// The frame loop: wakes on the grid, runs the stages, accounts, goes to the next slot. Short enough to audit at one look.
+// The frame loop: wakes on the grid, runs the stages, accounts, shows the picture at its time, goes to the next slot. Short
+// enough to audit at one look.
 #pragma once
 
 #include <atomic>
@@ -15,6 +16,12 @@
 
 namespace surefoot::rt {
 
+/// What became of a picture that was presented. time_ns: when the display showed it, where it tells (`display`).
+struct Shown {
+    ShownBy by = ShownBy::nothing;
+    std::int64_t time_ns = 0;
+};
+
 /// The stages of a frame, called in this order on the frame thread. The record has slot, frame, due_ns, deadline_ns, woken_ns and
 /// skipped_before. Own code in them must not allocate, lock or fault.
 class FrameStages {
@@ -26,11 +33,17 @@ public:
     virtual void select(FrameRecord& record) = 0;
     /// Hands the slices to the driver (driver tier of memory). submitted_ns is taken when it returns, unless it set it.
     virtual void submit(FrameRecord& record) = 0;
-    /// Waits for what submit() left, and presents (driver tier). Stages may do both in submit(). When it returns, presented_ns is
-    /// taken; rastered_ns too, unless submit() or finish() set it.
+    /// Waits for what submit() left (driver tier); stages may wait in submit(). When it returns, complete_ns is taken;
+    /// rastered_ns too, unless submit() or finish() set it.
     virtual void finish(FrameRecord& record) = 0;
-    /// After the frame's end, with usage, missed, own_miss and cause filled in: corrects costs, fills the rest of the record.
+    /// After the frame's work, with usage, missed, own_miss and cause filled in: corrects costs, fills the rest of the record. A
+    /// picture that is then shown too late still becomes a miss.
     virtual void account(FrameRecord& record) = 0;
+    /// Hands the whole picture to the display (driver tier), where FrameLoopOptions::shows. `lock` waits for its time before.
+    virtual Shown present(FrameRecord& record) {
+        static_cast<void>(record);
+        return {};
+    }
 };
 
 /// Settings of the loop. Pointers must outlive the run.
@@ -39,6 +52,8 @@ struct FrameLoopOptions {
     std::int64_t t0_ns = 0;    ///< 0: the first slot is due one period after the call
     std::uint64_t frames = 0;  ///< frames to run; 0: until stopped (or the control schedule ends)
     LatePolicy late = LatePolicy::lock;
+    /// Pictures are presented, and judged by when that is done. False (the virtual clock): a frame ends when it is whole.
+    bool shows = false;
     const ControlSchedule* control = nullptr;   ///< not null: ends after its last block
     const std::atomic<bool>* stop = nullptr;    ///< read once a frame
     const std::atomic<bool>* failed = nullptr;  ///< the same; set when the stages cannot continue

@@ -38,18 +38,22 @@ struct FrameRecord {
     std::uint64_t slot = 0;     ///< grid slot; skipped slots are the gaps
     std::uint64_t frame = 0;    ///< frames run, from 0
     std::int64_t due_ns = 0;    ///< t0 + slot * T
-    std::int64_t ready_ns = 0;  ///< earliest start: due_ns, or (late policy float, after a late frame) that frame's end
+    std::int64_t ready_ns = 0;  ///< earliest start: due_ns, or later by what presenting the frame before took of this slot
     std::int64_t woken_ns = 0;
     std::int64_t selected_ns = 0;    ///< sample, select and slice plan done
     std::int64_t submitted_ns = 0;   ///< last slice handed to the driver
     std::int64_t rastered_ns = 0;    ///< last fence passed
-    std::int64_t presented_ns = 0;   ///< end of the frame
-    std::int64_t deadline_ns = 0;    ///< due + T
+    std::int64_t complete_ns = 0;    ///< end of the frame's work: its picture is whole
+    std::int64_t deadline_ns = 0;    ///< by when it must be whole: due + T, less the time that presenting usually takes
+    std::int64_t show_ns = 0;        ///< when it was to be shown: on the grid (lock), or by the end of the slot (float)
+    std::int64_t handed_ns = 0;      ///< presenting began; this and the next are 0 where pictures are not presented
+    std::int64_t presented_ns = 0;   ///< presenting ended
+    std::int64_t shown_ns = 0;       ///< the picture was shown, as shown_by tells; else 0
     std::int64_t cpu_ns = 0;         ///< frame thread's own CPU time
     std::int64_t raster_cpu_ns = 0;  ///< of the driver's rasterisers; 0 where unknown
     std::int64_t stolen_ns = 0;      ///< wall minus CPU minus known waits, with no involuntary switch
     std::int64_t preempted_ns = 0;   ///< the same gap, where involuntary switches were seen
-    std::int64_t waited_ns = 0;      ///< known waits: for the driver's rasterisers, for the display
+    std::int64_t waited_ns = 0;      ///< known waits: for the driver's rasterisers, for the display; not for the time of showing
     std::int64_t upload_ns = 0;
     std::int64_t input_stamp_ns = 0;                   ///< of the newest report in this frame's pose; 0: none
     std::uint64_t input_reports = 0;                   ///< in its pose, since the walk began
@@ -85,6 +89,7 @@ struct FrameRecord {
     bool other_samples = false;  ///< the driver lacks the requested number
     TextureFilter filter = TextureFilter::bilinear;
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
+    ShownBy shown_by = ShownBy::nothing;
     bool at_rest = false;  ///< no cut was drawn: the shown picture stays, or full detail replaces it
     bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss
     Cause cause = Cause::none;
@@ -92,6 +97,11 @@ struct FrameRecord {
     std::array<double, 3> eye{};          ///< metres
     std::array<double, 4> orientation{};  ///< x, y, z, w
 };
+
+/// By how much a missed frame was late: its picture was whole after the deadline, or shown after its time.
+inline std::int64_t late_ns(const FrameRecord& f) {
+    return f.complete_ns <= f.deadline_ns && f.show_ns > 0 ? f.presented_ns - f.show_ns : f.complete_ns - f.deadline_ns;
+}
 
 inline std::string_view cause_of(const FrameRecord& f) { return cause_names[static_cast<std::size_t>(f.cause)]; }
 

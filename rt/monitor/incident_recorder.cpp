@@ -34,20 +34,20 @@ void IncidentRecorder::add(const FrameRecord& record) {
     next_ = (next_ + 1) % capacity_;
     if (hand_over_ns_ == 0) {
         look_for_burst(record);
-    } else if (record.presented_ns >= hand_over_ns_) {
+    } else if (record.complete_ns >= hand_over_ns_) {
         hand_over();
     }
 }
 
 void IncidentRecorder::look_for_burst(const FrameRecord& record) {
-    while (!recent_misses_.empty() && record.presented_ns - recent_misses_.front().at_ns > in_ns(options_.burst_s)) {
+    while (!recent_misses_.empty() && record.complete_ns - recent_misses_.front().at_ns > in_ns(options_.burst_s)) {
         recent_count_ -= recent_misses_.front().count;
         recent_misses_.pop_front();
     }
     // The control's bare frames miss too, and are nobody's fault.
     const std::uint64_t missed = record.control ? 0 : (record.missed ? 1U : 0U) + record.skipped_before;
     if (missed == 0) return;
-    recent_misses_.push_back({record.presented_ns, record.frame, missed});
+    recent_misses_.push_back({record.complete_ns, record.frame, missed});
     recent_count_ += missed;
     if (recent_count_ < options_.burst_misses) return;
     bursts_.fetch_add(1, std::memory_order_relaxed);
@@ -55,11 +55,11 @@ void IncidentRecorder::look_for_burst(const FrameRecord& record) {
     recent_misses_.clear();
     recent_count_ = 0;
     const bool too_soon =
-        ever_ && record.presented_ns >= handed_over_ns_ && record.presented_ns - handed_over_ns_ < in_ns(options_.between_s);
+        ever_ && record.complete_ns >= handed_over_ns_ && record.complete_ns - handed_over_ns_ < in_ns(options_.between_s);
     if (too_soon) {
         suppress();
     } else {
-        hand_over_ns_ = record.presented_ns + in_ns(options_.after_s);
+        hand_over_ns_ = record.complete_ns + in_ns(options_.after_s);
     }
 }
 
@@ -81,7 +81,7 @@ void IncidentRecorder::hand_over() {
     incident_.records.clear();
     incident_.records.reserve(capacity_);
     for (std::size_t i = 0; i < ring_.size(); ++i) incident_.records.push_back(ring_[(oldest + i) % ring_.size()]);
-    handed_over_ns_ = incident_.records.back().presented_ns;
+    handed_over_ns_ = incident_.records.back().complete_ns;
     ever_ = true;
     state_.store(full, std::memory_order_release);
     state_.notify_all();

@@ -51,6 +51,12 @@ void Distribution::add_progression(const Edges& edges, std::int64_t first_ns, st
 
 std::uint64_t Figures::all_misses() const { return std::accumulate(misses.begin(), misses.end(), std::uint64_t{0}); }
 
+ShownBy Figures::told_by() const {
+    for (const ShownBy by : {ShownBy::display, ShownBy::hand_over})
+        if (shown_by[static_cast<std::size_t>(by)] > 0) return by;
+    return ShownBy::nothing;
+}
+
 double Figures::one_percent_low_hz() const {
     const Histogram& shown = of(Series::shown_interval).fine;
     return shown.count() > 0 ? 1e9 / static_cast<double>(std::max<std::int64_t>(shown.quantile(0.99), 1)) : 0;
@@ -87,8 +93,8 @@ void Telemetry::add(const FrameRecord& record) {
         figures_.last = record;
         follows_ = true;
     }
-    if (record.presented_ns - published_ns_ >= publish_ns || record.presented_ns < published_ns_) {
-        published_ns_ = record.presented_ns;
+    if (record.complete_ns - published_ns_ >= publish_ns || record.complete_ns < published_ns_) {
+        published_ns_ = record.complete_ns;
         publish();
     }
 }
@@ -141,39 +147,44 @@ void Telemetry::add_times(const FrameRecord& f) {
     of(Series::select).add(edges, f.selected_ns - f.woken_ns);
     of(Series::submit).add(edges, f.submitted_ns - f.selected_ns);
     of(Series::raster).add(edges, f.rastered_ns - f.submitted_ns);
-    of(Series::present).add(edges, f.presented_ns - f.rastered_ns);
-    of(Series::frame).add(edges, f.presented_ns - f.due_ns);
-    const std::int64_t slack_ns = f.deadline_ns - f.presented_ns;
+    of(Series::present).add(edges, f.handed_ns > 0 ? f.presented_ns - f.handed_ns : f.complete_ns - f.rastered_ns);
+    of(Series::frame).add(edges, f.complete_ns - f.due_ns);
+    const std::int64_t slack_ns = f.missed ? -late_ns(f) : f.deadline_ns - f.complete_ns;
     of(slack_ns >= 0 ? Series::slack : Series::lateness).add(edges, std::abs(slack_ns));
     // A skipped slot has no picture until this one: that is how late it is. Nothing of a stall is left out.
-    const std::int64_t period_ns = std::max<std::int64_t>(f.deadline_ns - f.due_ns, 1);
-    if (f.skipped_before > 0) of(Series::lateness).add_progression(edges, f.presented_ns - f.due_ns, period_ns, f.skipped_before);
+    if (f.skipped_before > 0)
+        of(Series::lateness).add_progression(edges, f.complete_ns - f.due_ns, figures_.setup.period_ns, f.skipped_before);
     if (f.input_reports > reports_seen_) {
         figures_.input_reports += f.input_reports - reports_seen_;
         reports_seen_ = f.input_reports;
         if (f.input_stamp_ns > 0) of(Series::input_age).add(edges, f.submitted_ns - f.input_stamp_ns);
+        if (f.input_stamp_ns > 0 && f.shown_by != ShownBy::nothing)
+            of(Series::input_to_shown).add(edges, f.shown_ns - f.input_stamp_ns);
     }
 }
 
 void Telemetry::add_shown(const FrameRecord& f) {
-    const Grid grid{f.due_ns, std::max<std::int64_t>(f.deadline_ns - f.due_ns, 1)};
-    const std::int64_t shown_ns = next_slot(grid, figures_.setup.late, 0, f.presented_ns).shown_ns;
-    if (follows_) {
-        const std::int64_t interval_ns = shown_ns - previous_shown_ns_;
+    ++figures_.shown_by[static_cast<std::size_t>(f.shown_by)];
+    const bool follows = follows_ && shown_;
+    shown_ = f.shown_by != ShownBy::nothing;
+    if (!shown_) return;
+    if (figures_.setup.late == LatePolicy::lock) of(Series::shown_error).add(figures_.edges, std::abs(f.shown_ns - f.show_ns));
+    if (follows) {
+        const std::int64_t interval_ns = f.shown_ns - previous_shown_ns_;
         of(Series::shown_interval).add(figures_.edges, interval_ns);
         // A frame's pose is that of its due time, so that is the time its picture is of.
         of(Series::animation_error).add(figures_.edges, std::abs(interval_ns - (f.due_ns - previous_due_ns_)));
     }
-    previous_shown_ns_ = shown_ns;
+    previous_shown_ns_ = f.shown_ns;
     previous_due_ns_ = f.due_ns;
 }
 
 void Telemetry::add_recent(const FrameRecord& f) {
     const auto us_of = [](std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-3); };
     RecentFrame& r = figures_.recent[figures_.recent_count++ % Figures::max_recent];
-    r.frame_us = us_of(f.presented_ns - f.due_ns);
+    r.frame_us = us_of(f.complete_ns - f.due_ns);
     r.wake_us = us_of(f.woken_ns - f.due_ns);
-    r.slack_us = us_of(f.deadline_ns - f.presented_ns);
+    r.slack_us = us_of(f.deadline_ns - f.complete_ns);
     r.used = static_cast<float>(busy_ns(f, figures_.setup.rasterisers) / static_cast<double>(figures_.setup.period_ns));
     r.resolution = f.resolution;
     r.accuracy = f.accuracy;

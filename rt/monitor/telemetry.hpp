@@ -45,15 +45,18 @@ enum class Series : std::uint8_t {
     select,           ///< woken -> selected
     submit,           ///< selected -> submitted
     raster,           ///< submitted -> last fence
-    present,          ///< last fence -> presented
-    frame,            ///< due -> presented
-    slack,            ///< of frames in time: presented -> deadline
-    lateness,         ///< of late frames: deadline -> presented; of a skipped slot: its deadline -> the next frame presented
-    shown_interval,   ///< from one shown frame to the next
+    present,          ///< handed to the display -> presented; where pictures are not presented: last fence -> complete
+    frame,            ///< due -> complete
+    slack,            ///< of frames in time: complete -> deadline
+    lateness,         ///< of late frames: deadline -> complete, or planned -> presented where only that was late; of a skipped
+                      ///< slot: its deadline -> the next frame complete
+    shown_interval,   ///< from one shown picture to the next, of frames that follow one another
+    shown_error,      ///< |shown - planned| of pictures that are planned for a point of the grid (late policy lock)
     animation_error,  ///< |shown interval - interval of the times that the poses are of|
-    input_age         ///< of a frame with new reports: stamp of the newest -> submitted
+    input_age,        ///< of a frame with new reports: stamp of the newest -> submitted
+    input_to_shown    ///< of such a frame whose picture was shown: stamp of the newest -> shown
 };
-constexpr std::size_t series_count = 12;
+constexpr std::size_t series_count = 14;
 
 /// One of the last frames, for live views.
 struct RecentFrame {
@@ -86,8 +89,9 @@ struct Figures {
     std::uint64_t own_misses = 0, downgraded_slices = 0, slices = 0, switches = 0, triangles = 0;
     std::uint64_t minor_faults = 0, major_faults = 0, driver_faults = 0, driver_allocations = 0, guard_violations = 0;
     std::uint64_t input_reports = 0, stopped_frames = 0, floor_frames = 0, rest_frames = 0, continues = 0;
-    std::uint64_t broken_guarantees = 0;  ///< frames below the accuracy that is guaranteed
-    std::uint64_t trilinear_frames = 0;   ///< that blended two mip levels
+    std::uint64_t broken_guarantees = 0;                          ///< frames below the accuracy that is guaranteed
+    std::uint64_t trilinear_frames = 0;                           ///< that blended two mip levels
+    std::array<std::uint64_t, shown_by_names.size()> shown_by{};  ///< frames, by who told when they were shown
     std::int64_t stolen_ns = 0, preempted_ns = 0, frame_cpu_ns = 0, raster_cpu_ns = 0;
     double prepare_cpu_us = 0;
     FrameRecord last;  ///< newest frame of the walk; meaningless while frames is 0
@@ -98,6 +102,8 @@ struct Figures {
     [[nodiscard]] std::uint64_t all_misses() const;
     /// slots = frames + skipped_slots + lost_slots
     [[nodiscard]] std::uint64_t slots() const { return frames + skipped_slots + lost_slots; }
+    /// Who tells when pictures are shown: the display where it told of any, else the hand-over; nothing where none was shown.
+    [[nodiscard]] ShownBy told_by() const;
     /// 1 / p99 of shown_interval; 0 before the second frame.
     [[nodiscard]] double one_percent_low_hz() const;
 };
@@ -127,6 +133,7 @@ private:
 
     Figures figures_;
     bool follows_ = false;  ///< previous_ is the record just before, and the walk's
+    bool shown_ = false;    ///< and its picture was shown
     bool any_ = false;      ///< of this walk
     std::uint64_t next_slot_ = 0;
     std::int64_t previous_due_ns_ = 0, previous_shown_ns_ = 0;

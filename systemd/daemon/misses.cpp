@@ -23,14 +23,14 @@ std::optional<Burst> Bursts::add(const rt::FrameRecord& record) {
         open_.began_ns = record.due_ns;
         open_.first_slot = record.slot;
     }
-    open_.last_ns = std::max(record.due_ns, record.presented_ns);
+    open_.last_ns = std::max(record.due_ns, record.complete_ns);
     open_.last_slot = record.slot;
     open_.skipped += record.skipped_before;
     if (!record.missed) return closed;
     ++open_.misses;
     open_.own_misses += record.own_miss ? 1 : 0;
     ++open_.causes[static_cast<std::size_t>(record.cause)];
-    open_.worst_late_ns = std::max(open_.worst_late_ns, record.presented_ns - record.deadline_ns);
+    open_.worst_late_ns = std::max(open_.worst_late_ns, late_ns(record));
     return closed;
 }
 

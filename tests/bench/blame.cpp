@@ -96,26 +96,34 @@ void BlameStages::finish(rt::FrameRecord& r) {
     rasteriser_.schedule(0, 3 * ms + (now(r, rt::Cause::raster) ? extra_ns(r.frame) : 0), 0);
     rasteriser_.finish();
     r.rastered_ns = clock_.now_ns();
+}
+
+rt::Shown BlameStages::present(rt::FrameRecord& r) {
     clock_.burn_ns(ms / 10);
-    if (!now(r, rt::Cause::present)) return;
-    // In turn: a driver that copies, and a display that is waited for.
-    const std::int64_t extra = extra_ns(r.frame);
-    if (r.frame / frames_apart % 2 == 0) {
-        clock_.burn_ns(extra);
-    } else {
-        clock_.sleep_until_ns(clock_.now_ns() + extra);
+    if (now(r, rt::Cause::present)) {
+        // In turn: a driver that copies, and a display that is waited for. Either makes a miss.
+        const std::int64_t extra = extra_ns(r.frame);
+        if (r.frame / frames_apart % 2 == 0) {
+            clock_.burn_ns(extra);
+        } else {
+            clock_.sleep_until_ns(clock_.now_ns() + extra);
+        }
+        if (r.frame >= 2 * frames_apart) count(r.frame);
+    }
+    if (injected(r.frame + 1)) stolen_before_ms_ = walk::total_steal_ms();
+    return {rt::ShownBy::hand_over, 0};
+}
+
+void BlameStages::count(std::uint64_t frame) {
+    if (walk::total_steal_ms() > stolen_before_ms_) {
+        two_causes_.push_back(frame);
+    } else if (--wanted_ == 0) {
+        enough_ = true;
     }
 }
 
 void BlameStages::account(rt::FrameRecord& r) {
-    if (counts(r)) {
-        if (walk::total_steal_ms() > stolen_before_ms_) {
-            two_causes_.push_back(r.frame);
-        } else if (--wanted_ == 0) {
-            enough_ = true;
-        }
-    }
-    if (injected(r.frame + 1)) stolen_before_ms_ = walk::total_steal_ms();
+    if (counts(r)) count(r.frame);
     // The preparation falls behind for as long as it takes to make a set too old just at the injected frame.
     const bool stalled =
         cause_ == rt::Cause::prepared_too_old && r.frame % frames_apart < frames_apart / 2 && r.frame >= frames_apart;
@@ -151,6 +159,7 @@ Named inject(rt::Cause cause, int times, int core, Stopper& stopper) {
         const std::array<pid_t, 1> rasterisers = {rasteriser.tid()};
         rt::FrameLoopOptions options;
         options.period_ns = period_ns;
+        options.shows = true;
         options.frames = static_cast<std::uint64_t>(times * 4) * frames_apart;
         options.stop = &stages.enough();
         options.continued = rt::count_continues();
@@ -182,7 +191,7 @@ Named inject(rt::Cause cause, int times, int core, Stopper& stopper) {
 /// Some kernels charge a part of the thefts to the thread that was running: then its CPU clock went on, and nothing in the
 /// frame's own clocks tells theft from work. Half of the lateness must be missing from it.
 bool clock_stood_still(const rt::FrameRecord& r) {
-    return 2 * (r.presented_ns - r.woken_ns - r.cpu_ns) >= r.presented_ns - r.deadline_ns;
+    return 2 * (r.complete_ns - r.woken_ns - r.cpu_ns) >= r.complete_ns - r.deadline_ns;
 }
 
 /// Frames that a host stole from, through the classifier alone.

@@ -160,6 +160,7 @@ public:
     void submit(rt::FrameRecord& record) override;
     void finish(rt::FrameRecord& record) override;
     void account(rt::FrameRecord& record) override;
+    rt::Shown present(rt::FrameRecord& record) override;
     [[nodiscard]] static bool injected(std::uint64_t frame) { return frame % frames_apart == frames_apart / 2; }
     /// An injection that was carried out and made its frame miss.
     [[nodiscard]] static bool counts(const rt::FrameRecord& record) {
@@ -178,6 +179,7 @@ private:
     }
     [[nodiscard]] std::int64_t extra_ns(std::uint64_t frame) const;
     bool stopped_for(std::int64_t ns);
+    void count(std::uint64_t frame);
 
     rt::Cause cause_;
     int wanted_;

@@ -25,7 +25,7 @@ constexpr std::string_view stolen_header =
 inline std::string stolen_row(const rt::FrameRecord& r, double steal_ms) {
     const auto since = [&](std::int64_t ns) { return ns - r.due_ns; };
     return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{:.0f}\n", since(r.deadline_ns), since(r.woken_ns), since(r.selected_ns),
-                       since(r.submitted_ns), since(r.rastered_ns), since(r.presented_ns), r.cpu_ns, r.stolen_ns, r.voluntary,
+                       since(r.submitted_ns), since(r.rastered_ns), since(r.complete_ns), r.cpu_ns, r.stolen_ns, r.voluntary,
                        r.involuntary, r.minor_faults, steal_ms);
 }
 
@@ -50,11 +50,11 @@ inline Result<std::vector<rt::FrameRecord>> read_stolen_frames(const std::string
         }
         rt::FrameRecord r;
         r.deadline_ns = v[0], r.woken_ns = v[1], r.selected_ns = v[2], r.submitted_ns = v[3], r.rastered_ns = v[4];
-        r.presented_ns = v[5], r.cpu_ns = v[6], r.stolen_ns = v[7];
+        r.complete_ns = v[5], r.cpu_ns = v[6], r.stolen_ns = v[7];
         r.voluntary = static_cast<std::uint32_t>(v[8]), r.involuntary = static_cast<std::uint32_t>(v[9]);
         r.minor_faults = static_cast<std::uint32_t>(v[10]);
         r.prepared_age = 1;
-        r.missed = r.presented_ns > r.deadline_ns;
+        r.missed = r.complete_ns > r.deadline_ns;
         records.push_back(r);
     }
     return records;

@@ -87,7 +87,7 @@ rt::FrameRecord frame(std::uint64_t slot, bool missed, rt::Cause cause = rt::Cau
     r.slot = slot;
     r.due_ns = static_cast<std::int64_t>(slot) * period;
     r.deadline_ns = r.due_ns + period;
-    r.presented_ns = r.deadline_ns + (missed ? 3'000'000 : -5'000'000);
+    r.complete_ns = r.deadline_ns + (missed ? 3'000'000 : -5'000'000);
     r.missed = missed;
     r.own_miss = missed && cause == rt::Cause::raster;
     r.cause = cause;
@@ -126,7 +126,7 @@ TEST(Bursts, AFrameThatTookSecondsAndTheSlotsItCostAreOne) {
     Bursts bursts;
     EXPECT_FALSE(bursts.add(frame(0, false)));
     rt::FrameRecord frozen = frame(1, true, rt::Cause::stopped);
-    frozen.presented_ns = frozen.deadline_ns + 3 * second;
+    frozen.complete_ns = frozen.deadline_ns + 3 * second;
     EXPECT_FALSE(bursts.add(frozen));
     EXPECT_FALSE(bursts.add(frame(153, false, rt::Cause::none, 151)));
     const auto burst = bursts.finish();

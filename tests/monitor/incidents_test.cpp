@@ -36,7 +36,7 @@ rt::IncidentRecorder::Incident an_incident(std::uint64_t number, int frames = 20
         f.submitted_ns = f.selected_ns + 1'000'000;
         f.rastered_ns = f.submitted_ns + 2'000'000;
         f.missed = i >= 100 && i < 104;
-        f.presented_ns = f.missed ? f.deadline_ns + 500'000 : f.rastered_ns;
+        f.complete_ns = f.missed ? f.deadline_ns + 500'000 : f.rastered_ns;
         f.cause = f.missed ? rt::Cause::preempted : rt::Cause::none;
         incident.records.push_back(f);
     }
@@ -135,7 +135,7 @@ TEST(Incidents, AFullDiskIsReportedOnceAndSurvived) {
             f.due_ns += static_cast<std::int64_t>(frame++) * 10'000'000;
             f.deadline_ns = f.due_ns + 10'000'000;
             f.missed = i < 3;
-            f.presented_ns = f.due_ns + (f.missed ? 11'000'000 : 5'000'000);
+            f.complete_ns = f.due_ns + (f.missed ? 11'000'000 : 5'000'000);
             box.add(f);
         }
         EXPECT_TRUE(test::eventually(5, [&] { return (*writer)->written() + (*writer)->failed() >= outcomes; })) << outcomes;

@@ -28,7 +28,7 @@ rt::FrameRecord monitored_frame(std::uint64_t i, bool late) {
     f.selected_ns = f.woken_ns + 400'000;
     f.submitted_ns = f.selected_ns + 6'000'000;
     f.rastered_ns = f.submitted_ns + (late ? 30'000'000 : 12'000'000);
-    f.presented_ns = f.rastered_ns + 100'000;
+    f.complete_ns = f.rastered_ns + 100'000;
     f.cpu_ns = 5'000'000;
     f.raster_cpu_ns = 20'000'000;
     f.missed = late;

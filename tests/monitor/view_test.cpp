@@ -30,7 +30,7 @@ json viewed_status(int frames, const std::string& model = "/srv/models/town.walk
         was_late = f.missed = i % 40 == 39;
         f.cause = f.missed ? rt::Cause::stolen : rt::Cause::none;
         f.woken_ns = f.selected_ns = f.submitted_ns = f.due_ns + 100'000;
-        f.rastered_ns = f.presented_ns = f.due_ns + (f.missed ? 25'000'000 : 10'000'000);
+        f.rastered_ns = f.complete_ns = f.due_ns + (f.missed ? 25'000'000 : 10'000'000);
         f.accuracy = 100;
         telemetry->add(f);
     }

@@ -21,7 +21,7 @@ inline rt::FrameRecord good_frame(std::uint64_t slot, std::uint64_t frame) {
     f.selected_ns = f.woken_ns + 500'000;
     f.submitted_ns = f.selected_ns + 10'000'000;
     f.rastered_ns = f.submitted_ns + 9'000'000;
-    f.presented_ns = f.due_ns + 20'000'000;
+    f.complete_ns = f.due_ns + 20'000'000;
     f.cpu_ns = 10'000'000;
     f.raster_cpu_ns = 16'000'000;
     f.predicted_us = 18'000;
@@ -49,8 +49,8 @@ inline std::vector<rt::FrameRecord> good_frames(std::size_t count) {
 /// Frame 1 of 4 takes 50 ms (own, raster); the slot after it is skipped.
 inline std::vector<rt::FrameRecord> frames_with_a_miss() {
     std::vector<rt::FrameRecord> records = {good_frame(0, 0), good_frame(1, 1), good_frame(3, 2), good_frame(4, 3)};
-    records[1].presented_ns = records[1].due_ns + 50'000'000;
-    records[1].rastered_ns = records[1].presented_ns;
+    records[1].complete_ns = records[1].due_ns + 50'000'000;
+    records[1].rastered_ns = records[1].complete_ns;
     records[1].missed = records[1].own_miss = true;
     records[1].cause = rt::Cause::raster;
     records[1].triangles = 5000;

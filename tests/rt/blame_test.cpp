@@ -28,7 +28,7 @@ FrameRecord ordinary(Random& random) {
     r.selected_ns = r.woken_ns + share(0.02);
     r.submitted_ns = r.selected_ns + share(0.35);
     r.rastered_ns = r.submitted_ns + share(0.35);
-    r.presented_ns = r.rastered_ns + share(0.02);
+    r.complete_ns = r.rastered_ns + share(0.02);
     r.prepared_age = 1;
     return r;
 }
@@ -38,8 +38,8 @@ void delay_from(FrameRecord& r, int phase, std::int64_t ns) {
     if (phase <= 1) r.selected_ns += ns;
     if (phase <= 2) r.submitted_ns += ns;
     if (phase <= 3) r.rastered_ns += ns;
-    r.presented_ns += ns;
-    r.missed = r.presented_ns > r.deadline_ns;
+    r.complete_ns += ns;
+    r.missed = r.complete_ns > r.deadline_ns;
 }
 
 TEST(OldestPrepared, IsThreeFramesAndAtLeastFiftyMilliseconds) {

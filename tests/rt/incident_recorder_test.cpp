@@ -23,7 +23,7 @@ public:
             r.deadline_ns = r.due_ns + box_period_ns;
             r.missed = every_misses > 0 && i % every_misses == 0;
             r.skipped_before = r.missed ? skipped : 0;
-            r.presented_ns = r.due_ns + (r.missed ? 12'000'000 : 5'000'000);
+            r.complete_ns = r.due_ns + (r.missed ? 12'000'000 : 5'000'000);
             r.control = control_;
             r.cause = r.missed ? Cause::raster : Cause::none;
             ++frame_;

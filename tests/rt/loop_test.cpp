@@ -225,7 +225,7 @@ TEST(Loop, FloatStartsAtOnceAfterALateFrameAndIsNotCalledWokenLate) {
     const auto records = walk.run();
     EXPECT_EQ(walk.result.skipped, 0U);
     EXPECT_EQ(records[4].slot, 4U);
-    EXPECT_EQ(records[4].ready_ns, records[3].presented_ns);
+    EXPECT_EQ(records[4].ready_ns, records[3].complete_ns);
     EXPECT_EQ(records[4].woken_ns, records[4].ready_ns);
     EXPECT_FALSE(records[4].missed) << "11.5 - 10 + 6.5 ms fit";
 }

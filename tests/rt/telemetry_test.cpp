@@ -35,12 +35,14 @@ public:
         r.woken_ns = begins + 10'000;
         r.selected_ns = r.woken_ns + 100'000;
         r.submitted_ns = r.selected_ns + 200'000;
-        r.presented_ns = std::max(begins + takes_ns, r.submitted_ns);
-        r.rastered_ns = r.presented_ns;
-        r.missed = r.presented_ns > r.deadline_ns;
+        r.complete_ns = std::max(begins + takes_ns, r.submitted_ns);
+        r.rastered_ns = r.complete_ns;
+        r.missed = r.complete_ns > r.deadline_ns;
         r.cause = r.missed ? Cause::raster : Cause::none;
         r.accuracy = 100;
-        next_ = next_slot(grid_, late_, r.slot, r.presented_ns);
+        next_ = next_slot(grid_, late_, r.slot, r.complete_ns);
+        r.show_ns = r.handed_ns = r.presented_ns = r.shown_ns = next_.shown_ns;
+        r.shown_by = ShownBy::hand_over;
         return r;
     }
 

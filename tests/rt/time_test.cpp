@@ -111,7 +111,7 @@ TEST(Loop, ControlBlocksAlternateAndTheBareLoopBurnsTheSame) {
         EXPECT_EQ(r.control, !ControlSchedule::is_walk(r.block));
         (r.control ? bare : walk) += 1;
         if (r.control) {
-            EXPECT_EQ(r.presented_ns - r.woken_ns, 7 * ms);
+            EXPECT_EQ(r.complete_ns - r.woken_ns, 7 * ms);
         }
     }
     EXPECT_EQ(walk, 20);

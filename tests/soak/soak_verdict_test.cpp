@@ -249,7 +249,7 @@ std::vector<rt::FrameRecord> frames_of(int frames) {
         r.deadline_ns = r.due_ns + soak_period_ns;
         r.woken_ns = r.selected_ns = r.submitted_ns = r.due_ns;
         const bool late = i % 3 == 2;
-        r.rastered_ns = r.presented_ns = r.due_ns + (late ? 5 : 1) * soak_period_ns / 2;
+        r.rastered_ns = r.complete_ns = r.due_ns + (late ? 5 : 1) * soak_period_ns / 2;
         r.missed = r.own_miss = late;
         r.cause = late ? rt::Cause::submit : rt::Cause::none;
         r.control = i % 4 == 3;

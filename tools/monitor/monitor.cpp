@@ -134,8 +134,8 @@ void Monitor::on_record(const rt::FrameRecord& record) {
     if (walk_waits_.load(std::memory_order_acquire)) take_walk();
     telemetry_.add(record);
     incident_recorder_.add(record);
-    if (record.presented_ns - cpu_read_ns_ < cpu_every_ns && record.presented_ns >= cpu_read_ns_) return;
-    cpu_read_ns_ = record.presented_ns;
+    if (record.complete_ns - cpu_read_ns_ < cpu_every_ns && record.complete_ns >= cpu_read_ns_) return;
+    cpu_read_ns_ = record.complete_ns;
     const std::int64_t cpu_ns = rt::own_cpu_ns();  // another walk's monitor is another thread, and starts from zero
     cpu_ns_.fetch_add(cpu_ns >= cpu_seen_ns_ ? cpu_ns - cpu_seen_ns_ : cpu_ns, std::memory_order_relaxed);
     cpu_seen_ns_ = cpu_ns;
@@ -160,7 +160,7 @@ const MonitorPage& Monitor::fill_page(bool with_threads) {
     p.rare_checks = rare_checks();
     p.up_s = static_cast<double>(now_ns - started_ns_) * 1e-9;
     p.last_frame_age_s = p.figures->frames > 0 && p.walk.clock == rt::name_of(rt::ClockKind::real)
-                             ? static_cast<double>(std::max<std::int64_t>(now_ns - p.figures->last.presented_ns, 0)) * 1e-9
+                             ? static_cast<double>(std::max<std::int64_t>(now_ns - p.figures->last.complete_ns, 0)) * 1e-9
                              : -1;
     p.counts.monitor_cpu_s = static_cast<double>(cpu_ns_.load(std::memory_order_relaxed)) * 1e-9;
     p.counts.bursts = incident_recorder_.bursts();

@@ -158,6 +158,11 @@ void add_times(Exposition& e, const Figures& f) {
     e.histogram(f.of(Series::lateness), f.edges);
     e.family("surefoot_shown_interval_seconds", "histogram", "From one picture shown to the next one.");
     e.histogram(f.of(Series::shown_interval), f.edges);
+    e.family("surefoot_shown_error_seconds", "histogram",
+             "|shown - planned| of pictures that are planned for a point of the grid (late policy lock).");
+    e.histogram(f.of(Series::shown_error), f.edges);
+    e.family("surefoot_shown_frames_total", "counter", "Frames by who told when their picture was shown.");
+    for (std::size_t i = 0; i < f.shown_by.size(); ++i) e.count(f.shown_by[i], fmt::format("by=\"{}\"", rt::shown_by_names[i]));
     e.family(
         "surefoot_animation_error_seconds", "histogram",
         "|(shown[n] - shown[n-1]) - (due[n] - due[n-1])|: PresentMon's animation error, a frame's pose being that of its due "
@@ -166,6 +171,9 @@ void add_times(Exposition& e, const Figures& f) {
     e.family("surefoot_input_age_seconds", "histogram",
              "Of frames with new reports: from the newest report's stamp until the frame was submitted.");
     e.histogram(f.of(Series::input_age), f.edges);
+    e.family("surefoot_input_to_shown_seconds", "histogram",
+             "Of frames with new reports whose picture was shown: from the newest report's stamp until then.");
+    e.histogram(f.of(Series::input_to_shown), f.edges);
 
     e.family("surefoot_frame_time_quantile_seconds", "summary",
              "Quantiles of surefoot_frame_seconds since the start, from bins of 1/32 of their value; quantile 1 is the exact "

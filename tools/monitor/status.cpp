@@ -114,9 +114,13 @@ ordered_json times_json(const Figures& f) {
                                                {"slack_ms", Series::slack, to_ms},
                                                {"lateness_ms", Series::lateness, to_ms},
                                                {"shown_interval_ms", Series::shown_interval, to_ms},
+                                               {"shown_error_us", Series::shown_error, to_us},
                                                {"animation_error_ms", Series::animation_error, to_ms},
-                                               {"input_age_ms", Series::input_age, to_ms}})
+                                               {"input_age_ms", Series::input_age, to_ms},
+                                               {"input_to_shown_ms", Series::input_to_shown, to_ms}})
         j[name] = distribution_json(f.of(series).fine, per_ns);
+    const rt::ShownBy by = f.told_by();
+    j["shown_by"] = by == rt::ShownBy::nothing ? ordered_json(nullptr) : ordered_json(rt::name_of(by));
     j["one_percent_low_hz"] = f.of(Series::shown_interval).fine.count() > 0 ? ordered_json(f.one_percent_low_hz()) : nullptr;
     return j;
 }

@@ -26,8 +26,10 @@ constexpr TimeRow time_rows[] = {{"frame", "frame_ms", "ms"},
                                  {"prepare (CPU)", "prepare_cpu_us", "us"},
                                  {"late by", "lateness_ms", "ms"},
                                  {"frame interval", "shown_interval_ms", "ms"},
+                                 {"off the grid", "shown_error_us", "us"},
                                  {"animation error", "animation_error_ms", "ms"},
-                                 {"input age", "input_age_ms", "ms"}};
+                                 {"input age", "input_age_ms", "ms"},
+                                 {"input to shown", "input_to_shown_ms", "ms"}};
 
 void add_head(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     const std::string state = text_at(s, "/state");

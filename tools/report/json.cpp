@@ -12,6 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr auto shown_missing = "no picture was presented: the virtual clock has no display, or the device was lost";
+
 Json tail(const Quantiles& q) {
     return {{"p50", rounded(q.p50)}, {"p99", rounded(q.p99)}, {"p999", rounded(q.p999)}, {"max", rounded(q.max)}};
 }
@@ -81,6 +83,10 @@ Json input_of(const InputSummary& in) {
         {"freed", in.freed},
         {"filter_lag_ms", rounded(in.filter_lag_ms)},
         {"guard_violations", in.guard_violations},
+        {"to_shown_ms", in.to_shown_ms.max > 0 ? Json({{"p50", rounded(in.to_shown_ms.p50)},
+                                                       {"p99", rounded(in.to_shown_ms.p99)},
+                                                       {"max", rounded(in.to_shown_ms.max)}})
+                                               : Json(nullptr)},
     };
 }
 
@@ -119,6 +125,17 @@ Json picture_of(const PictureSummary& p) {
         json["resolution_error_share"] = rounded(p.resolution_error_share);
     }
     return json;
+}
+
+/// Null where it is not known; shown_missing says why.
+void add_shown(const ShownSummary& s, Json& json) {
+    const bool shown = s.by != rt::ShownBy::nothing, several = s.one_percent_low_hz > 0;
+    json["shown_by"] = shown ? Json(rt::name_of(s.by)) : Json(nullptr);
+    if (!shown) json["shown_missing"] = shown_missing;
+    json["shown_interval_ms"] = several ? tail(s.interval_ms) : Json(nullptr);
+    json["shown_error_us"] = s.on_grid ? tail(s.error_us) : Json(nullptr);
+    json["animation_error_ms"] = several ? tail(s.animation_error_ms) : Json(nullptr);
+    json["one_percent_low_hz"] = several ? Json(rounded(s.one_percent_low_hz)) : Json(nullptr);
 }
 
 Json guarantee_of(const GuaranteeSummary& g) {
@@ -190,6 +207,7 @@ std::string to_json(const WalkSummary& s) {
         {"input", input_of(s.input)},
         {"picture", picture_of(s.picture)},
     };
+    add_shown(s.shown, json);
     if (s.guarantee.accuracy > 0) json["guarantee"] = guarantee_of(s.guarantee);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 78> columns = {{
+constexpr std::array<Column, 81> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -36,7 +36,10 @@ constexpr std::array<Column, 78> columns = {{
     {"raster_us", [](auto& r, auto& f) { add(r, "{:.3f}", raster_us(f)); }},
     {"present_us", [](auto& r, auto& f) { add(r, "{:.3f}", present_us(f)); }},
     {"slack_us", [](auto& r, auto& f) { add(r, "{:.3f}", slack_us(f)); }},
-    {"frame_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(f.due_ns, f.presented_ns)); }},
+    {"frame_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(f.due_ns, f.complete_ns)); }},
+    {"shown_by", [](auto& r, auto& f) { add(r, "{}", rt::name_of(f.shown_by)); }},
+    {"shown_us", [](auto& r, auto& f) { if (f.shown_by != rt::ShownBy::nothing) add(r, "{:.3f}", us_between(f.due_ns, f.shown_ns)); }},
+    {"shown_error_us", [](auto& r, auto& f) { if (f.shown_by != rt::ShownBy::nothing) add(r, "{:.3f}", us_between(f.show_ns, f.shown_ns)); }},
     {"predicted_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.predicted_us); }},
     {"actual_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.actual_us); }},
     {"budget_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.budget_us); }},

@@ -204,7 +204,12 @@ std::string figures_table(const WalkSummary& s) {
            row_of("Raster, ms", s.raster_ms, 1, 2) + row_of("Prepare (workers' CPU), µs", s.prepare_cpu_us, 1, 0) +
            row_of("Age of prepared arrays, frames", s.prepared_age, 1, 0) + row_of("Nodes visited to prepare", s.visits, 1, 0) +
            row_of("Of them occluded", s.hidden, 1, 0) + row_of("Error of predicted cost, %", s.cost_error, 100, 1);
+    if (s.shown.one_percent_low_hz > 0) {
+        out += row_of("Picture to picture, ms", s.shown.interval_ms, 1, 2);
+        if (s.shown.on_grid) out += row_of("Shown off the grid, µs", s.shown.error_us, 1, 0);
+    }
     if (s.input.given) out += row_of("Report to submitted frame, ms", s.input.age_ms, 1, 1);
+    if (s.input.to_shown_ms.max > 0) out += row_of("Report to picture shown, ms", s.input.to_shown_ms, 1, 1);
     out += "</table></div>\n";
     out += fmt::format(
         "<p class=\"sub\">{:.2f} switches a frame · {} slices drawn coarser than chosen, in {} frames · cut hash "

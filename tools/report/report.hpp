@@ -49,6 +49,7 @@ struct InputSummary {
     std::uint64_t refused = 0;                ///< short, long, undeclared: they changed nothing
     std::uint64_t illegal_encoder_steps = 0;  ///< of wired encoders: missed steps, whose direction is unknown
     Quantiles age_ms;                         ///< a report's, from its stamp until the first frame that holds it was submitted
+    Quantiles to_shown_ms;                    ///< the same until its picture was shown; all 0 where none was
     std::uint64_t stops = 0;                  ///< emergency stops
     std::uint64_t stopped_frames = 0;         ///< that stood still by order: emergency stop or dead-man
     bool stop_latched = false;                ///< at the end
@@ -114,6 +115,16 @@ void count_guarantee(const rt::FrameRecord& frame, GuaranteeSummary& guarantee);
 /// "100 /rad in 580 frames; not in 20 (over_budget); worst 88 /rad in frame 77: node 12 (door)".
 std::string guarantee_words(const GuaranteeSummary& guarantee);
 
+/// When pictures were shown, measured as `by` says. All zero where none was shown: on the virtual clock.
+struct ShownSummary {
+    rt::ShownBy by = rt::ShownBy::nothing;
+    Quantiles interval_ms;          ///< of pictures whose frames follow one another
+    Quantiles animation_error_ms;   ///< |interval - interval of the times that the poses are of|
+    Quantiles error_us;             ///< |shown - planned|; all zero with the late policy float, which plans no time
+    bool on_grid = false;           ///< error_us is known
+    double one_percent_low_hz = 0;  ///< 1 / p99 of interval_ms
+};
+
 /// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
@@ -153,6 +164,7 @@ struct WalkSummary {
     std::string uncalibrated;            ///< the cost table is missing: what, and the remedy
     std::vector<rt::Lack> degraded;      ///< what is not real-time here, and how to grant it
     ControlSummary control;
+    ShownSummary shown;
     InputSummary input;
     PictureSummary picture;
 };

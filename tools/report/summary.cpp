@@ -136,8 +136,35 @@ void rest_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
         s.rest_samples = std::max(s.rest_samples, f->rest_samples);
         if (f->rest_samples == 0 || !waits) continue;
         waits = false;
-        s.rest_ms = std::max(s.rest_ms, static_cast<double>(f->presented_ns - first->due_ns) * 1e-6);
+        s.rest_ms = std::max(s.rest_ms, static_cast<double>(f->complete_ns - first->due_ns) * 1e-6);
     }
+}
+
+ShownSummary shown_figures(std::span<const FrameRecord* const> frames, const std::string& late_policy) {
+    ShownSummary s;
+    s.on_grid = late_policy == rt::name_of(rt::LatePolicy::lock);
+    std::vector<double> intervals, errors, animation;
+    const FrameRecord* before = nullptr;
+    for (const FrameRecord* f : frames) {
+        const bool follows = before != nullptr && before->slot + 1 + f->skipped_before == f->slot;
+        if (f->shown_by == rt::ShownBy::nothing) {
+            before = nullptr;
+            continue;
+        }
+        s.by = std::max(s.by, f->shown_by);
+        if (s.on_grid) errors.push_back(std::abs(us_between(f->show_ns, f->shown_ns)));
+        if (follows) {
+            intervals.push_back(us_between(before->shown_ns, f->shown_ns) * 1e-3);
+            animation.push_back(std::abs(intervals.back() - us_between(before->due_ns, f->due_ns) * 1e-3));
+        }
+        before = f;
+    }
+    s.on_grid = s.on_grid && !errors.empty();
+    s.error_us = quantiles(std::move(errors));
+    s.interval_ms = quantiles(std::move(intervals));
+    s.animation_error_ms = quantiles(std::move(animation));
+    if (s.interval_ms.p99 > 0) s.one_percent_low_hz = 1e3 / s.interval_ms.p99;
+    return s;
 }
 
 /// Everything that is counted up starts from zero, so that a summary can be made anew from longer records.
@@ -181,6 +208,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     resolution_figures(frames, summary);
     quality_figures(frames, summary);
     rest_figures(frames, summary);
+    summary.shown = shown_figures(frames, summary.late_policy);
     summary.rate_hz = 1e9 / static_cast<double>(period_ns);
     summary.seconds = static_cast<double>(summary.slots) * static_cast<double>(period_ns) * 1e-9;
     summary.frame_ms = quantiles_of(frames, frame_ms);

@@ -31,6 +31,10 @@ void timing_rows(LabelledText& table, const WalkSummary& s) {
     row("submit, ms", s.submit_ms, 2, "");
     row("raster, ms", s.raster_ms, 2, "");
     row("prepare, us", s.prepare_cpu_us, 0, "CPU, workers");
+    if (s.shown.one_percent_low_hz > 0) {
+        row("interval, ms", s.shown.interval_ms, 2, fmt::format("picture to picture, by {}", rt::name_of(s.shown.by)));
+        if (s.shown.on_grid) row("off grid, us", s.shown.error_us, 0, "shown against planned");
+    }
     row("array age", s.prepared_age, 0, "frames");
     row("cost error, %",
         {s.cost_error.p50 * 100, s.cost_error.p90 * 100, s.cost_error.p99 * 100, s.cost_error.p999 * 100, s.cost_error.max * 100,

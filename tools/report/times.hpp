@@ -13,10 +13,13 @@ inline double wake_us(const rt::FrameRecord& f) { return us_between(f.due_ns, f.
 inline double select_us(const rt::FrameRecord& f) { return us_between(f.woken_ns, f.selected_ns); }
 inline double submit_us(const rt::FrameRecord& f) { return us_between(f.selected_ns, f.submitted_ns); }
 inline double raster_us(const rt::FrameRecord& f) { return us_between(f.submitted_ns, f.rastered_ns); }
-inline double present_us(const rt::FrameRecord& f) { return us_between(f.rastered_ns, f.presented_ns); }
-inline double slack_us(const rt::FrameRecord& f) { return us_between(f.presented_ns, f.deadline_ns); }
+/// Where pictures are not presented: what was left after the last fence.
+inline double present_us(const rt::FrameRecord& f) {
+    return f.handed_ns > 0 ? us_between(f.handed_ns, f.presented_ns) : us_between(f.rastered_ns, f.complete_ns);
+}
+inline double slack_us(const rt::FrameRecord& f) { return us_between(f.complete_ns, f.deadline_ns); }
 /// From when the frame was due (not from when it woke) to its end: comparable with the period.
-inline double frame_ms(const rt::FrameRecord& f) { return us_between(f.due_ns, f.presented_ns) * 1e-3; }
+inline double frame_ms(const rt::FrameRecord& f) { return us_between(f.due_ns, f.complete_ns) * 1e-3; }
 
 using rt::busy_ns;
 

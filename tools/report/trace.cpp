@@ -93,21 +93,22 @@ std::string frame_args(const FrameRecord& f) {
 
 void write_frame(TraceWriter& trace, const FrameRecord& f) {
     const std::string name = fmt::format("frame {}", f.frame);
-    const std::int64_t period_ns = f.deadline_ns - f.due_ns;
+    const std::int64_t slot_ns = f.deadline_ns - f.due_ns;  // about
     if (f.skipped_before > 0)
-        trace.slice(expected, "skipped", fmt::format("skipped {}", f.skipped_before), f.due_ns - period_ns * f.skipped_before,
+        trace.slice(expected, "skipped", fmt::format("skipped {}", f.skipped_before), f.due_ns - slot_ns * f.skipped_before,
                     f.due_ns, {}, "terrible");
     trace.slice(expected, "expected", name, f.due_ns, f.deadline_ns);
     if (f.control) {
-        trace.slice(bare, "frame", name, f.woken_ns, f.presented_ns, frame_args(f), f.missed ? "terrible" : "grey");
+        trace.slice(bare, "frame", name, f.woken_ns, f.complete_ns, frame_args(f), f.missed ? "terrible" : "grey");
         return;
     }
-    trace.slice(actual, "frame", name, f.woken_ns, f.presented_ns, frame_args(f), f.missed ? "terrible" : "good");
+    trace.slice(actual, "frame", name, f.woken_ns, f.complete_ns, frame_args(f), f.missed ? "terrible" : "good");
     trace.slice(phases, "phase", "wake", f.due_ns, f.woken_ns);
     trace.slice(phases, "phase", "select", f.woken_ns, f.selected_ns);
     trace.slice(phases, "phase", "submit", f.selected_ns, f.submitted_ns);
     trace.slice(phases, "phase", "raster", f.submitted_ns, f.rastered_ns);
-    trace.slice(phases, "phase", "present", f.rastered_ns, f.presented_ns);
+    trace.slice(phases, "phase", "present", f.handed_ns > 0 ? f.handed_ns : f.rastered_ns,
+                f.handed_ns > 0 ? f.presented_ns : f.complete_ns);
     trace.counter("budget spent, %", f.woken_ns, 100 * share_of_budget(f));
     trace.counter("accuracy, 1/rad", f.woken_ns, double{f.accuracy});
     trace.counter("resolution, %", f.woken_ns, 100 * double{f.resolution});

@@ -71,6 +71,8 @@ std::string input_words(const InputSummary& in) {
     if (in.refused > 0) text += fmt::format(", {} refused", grouped(static_cast<double>(in.refused)));
     text += fmt::format("; from report to submitted frame {:.1f} ms (p50), {:.1f} (p99), {:.1f} at most", in.age_ms.p50,
                         in.age_ms.p99, in.age_ms.max);
+    if (in.to_shown_ms.max > 0)
+        text += fmt::format(", to the picture shown {:.1f} (p50), {:.1f} (p99)", in.to_shown_ms.p50, in.to_shown_ms.p99);
     if (in.stops > 0) text += fmt::format("; {}", counted(in.stops, "emergency stop", "emergency stops"));
     if (in.stopped_frames > 0)
         text += fmt::format("; the walk stood still for {}", counted(in.stopped_frames, "frame", "frames"));

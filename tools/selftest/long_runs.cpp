@@ -175,10 +175,10 @@ void telemetry_books(const Effort& effort, Outcome& out) {
         f.deadline_ns = grid.deadline_ns(slot);
         const std::int64_t max_work_ns = random.below(200) == 0 ? 8'000'000'000'000'000 : 2 * period_ns;
         f.woken_ns = f.selected_ns = f.submitted_ns = f.rastered_ns = f.due_ns;
-        f.presented_ns = f.due_ns + static_cast<std::int64_t>(random.unit() * static_cast<double>(max_work_ns));
-        f.missed = f.presented_ns > f.deadline_ns;
+        f.complete_ns = f.due_ns + static_cast<std::int64_t>(random.unit() * static_cast<double>(max_work_ns));
+        f.missed = f.complete_ns > f.deadline_ns;
         telemetry->add(f);
-        const rt::NextSlot next = rt::next_slot(grid, rt::LatePolicy::lock, slot, f.presented_ns);
+        const rt::NextSlot next = rt::next_slot(grid, rt::LatePolicy::lock, slot, f.complete_ns);
         slot = next.slot;
         skipped_before = next.skipped;
     }

@@ -45,7 +45,7 @@ void SoakTally::add(const rt::FrameRecord& record) {
     last_was_walk_ = !record.control;
     last_miss_listed_ = false;
     if (!record.control) add_walk_frame(record);
-    last_end_ns_ = std::max(record.presented_ns, record.deadline_ns);
+    last_end_ns_ = std::max(record.complete_ns, record.deadline_ns);
 }
 
 void SoakTally::check_grid(const rt::FrameRecord& r) {
@@ -62,7 +62,7 @@ void SoakTally::check_grid(const rt::FrameRecord& r) {
 }
 
 void SoakTally::add_walk_frame(const rt::FrameRecord& r) {
-    const std::int64_t frame_ns = r.presented_ns - r.due_ns;
+    const std::int64_t frame_ns = r.complete_ns - r.due_ns;
     const double frame_ms = static_cast<double>(frame_ns) * 1e-6;
     frame_ns_.add(frame_ns);
     wake_ns_.add(r.woken_ns - r.due_ns);

@@ -121,6 +121,7 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     // Of a long live walk the first reports' ages are kept, not all.
     s.reports_shown = records.empty() ? 0 : std::max<std::uint64_t>(ages.size(), records.back().input_reports);
     s.age_ms = quantiles(ages);
+    s.to_shown_ms = quantiles(reports_to_shown_ms(records, source_->log().stamps()));
     const input::SafetyState& safety = steering_->safety();
     s.stops = safety.stops;
     s.stop_latched = safety.latched;
@@ -144,14 +145,29 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     return s;
 }
 
-std::vector<double> report_ages_ms(std::span<const rt::FrameRecord> records, std::span<const std::int64_t> stamps_ns) {
-    std::vector<double> ages;
+namespace {
+
+/// From each report's stamp to that time of the first frame that holds it; of frames where it is 0, none.
+std::vector<double> until_ms(std::span<const rt::FrameRecord> records, std::span<const std::int64_t> stamps_ns,
+                             std::int64_t rt::FrameRecord::*time_ns) {
+    std::vector<double> times;
     std::size_t seen = 0;
     for (const rt::FrameRecord& r : records) {
         const std::size_t until = std::min<std::size_t>(r.input_reports, stamps_ns.size());
-        for (; seen < until; ++seen) ages.push_back(static_cast<double>(r.submitted_ns - stamps_ns[seen]) * 1e-6);
+        for (; seen < until; ++seen)
+            if (r.*time_ns != 0) times.push_back(static_cast<double>(r.*time_ns - stamps_ns[seen]) * 1e-6);
     }
-    return ages;
+    return times;
+}
+
+}  // namespace
+
+std::vector<double> report_ages_ms(std::span<const rt::FrameRecord> records, std::span<const std::int64_t> stamps_ns) {
+    return until_ms(records, stamps_ns, &rt::FrameRecord::submitted_ns);
+}
+
+std::vector<double> reports_to_shown_ms(std::span<const rt::FrameRecord> records, std::span<const std::int64_t> stamps_ns) {
+    return until_ms(records, stamps_ns, &rt::FrameRecord::shown_ns);
 }
 
 }  // namespace surefoot::walk

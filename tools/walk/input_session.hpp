@@ -82,5 +82,7 @@ private:
 /// Ages of reports, ms: from a report's stamp until the first frame whose pose includes it was submitted. Pure. stamps_ns[i] is
 /// that of report i + 1. Reports that no frame includes, because they came after the last one, are left out.
 std::vector<double> report_ages_ms(std::span<const rt::FrameRecord> records, std::span<const std::int64_t> stamps_ns);
+/// The same until it was shown; nothing of frames that were not.
+std::vector<double> reports_to_shown_ms(std::span<const rt::FrameRecord> records, std::span<const std::int64_t> stamps_ns);
 
 }  // namespace surefoot::walk

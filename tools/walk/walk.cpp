@@ -81,6 +81,7 @@ rt::FrameLoopOptions loop_options(const Session& s, const Progress& progress) {
     o.t0_ns = s.grid.t0_ns;
     o.frames = s.frames;
     o.late = s.request.late;
+    o.shows = !s.virtual_clock;
     o.control = s.request.control ? &s.control : nullptr;
     o.stop = progress.stop;
     o.failed = &s.lost;

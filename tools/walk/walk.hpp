@@ -74,7 +74,7 @@ struct WalkOutcome {
 enum class WalkStep : std::uint8_t { request, input, real_time, model, device, frames, ending };
 
 /// Faults for tests: called on the frame thread as each stage of a frame begins; what it does there delays that stage.
-enum class FramePhase : std::uint8_t { sample, select, submit, finish };
+enum class FramePhase : std::uint8_t { sample, select, submit, finish, present };
 enum class Fault : std::uint8_t { none, context_lost };
 using FaultHook = std::function<Fault(FramePhase, const rt::FrameRecord&)>;
 

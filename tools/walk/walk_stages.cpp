@@ -1,4 +1,4 @@
-// The walk's frame: take the newest pose, take the newest prepared set, select, submit, account.
+// The walk's frame: take the newest pose, take the newest prepared set, select, submit, account, present.
 #include "tools/walk/walk_stages.hpp"
 
 #include <algorithm>
@@ -123,6 +123,7 @@ void WalkStages::rehearse(std::int64_t until_ns) {
         const Correction correction = correction_at(set.resolution, false);
         engine_.select(set, planned_us(correction, 0), correction, options_.target_error_rad);
         report_ = engine_.submit(newest.pose, limits);
+        device.present();
         learn(report_.finished_us);
         limit_.ended(static_cast<double>(clock_.now_ns() - begun_ns) * 1e-3);
         due_ns = std::max(due_ns, clock_.now_ns());
@@ -266,6 +267,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
     inject(FramePhase::submit, record);
     latch(record);
     SubmitLimits limits = frame_limits();
+    limits.deadline_us = static_cast<double>(record.deadline_ns - record.due_ns) * 1e-3;
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
     limits.frame_ns = record.due_ns;
@@ -295,8 +297,21 @@ double WalkStages::cost_factor(const rt::FrameRecord& record, double actual_us) 
     return std::max(expected, actual_us / report_.predicted_us);
 }
 
-/// submit() has waited for the last fence and presented.
-void WalkStages::finish(rt::FrameRecord& record) { inject(FramePhase::finish, record); }
+/// submit() has waited for the last fence. No time of the virtual clock is a display's, so a window shows that picture at once.
+void WalkStages::finish(rt::FrameRecord& record) {
+    inject(FramePhase::finish, record);
+    if (!virtual_clock_) return;
+    engine_.device().draws.plays();
+    engine_.device().present();
+}
+
+rt::Shown WalkStages::present(rt::FrameRecord& record) {
+    inject(FramePhase::present, record);
+    gl::Device& device = engine_.device();
+    device.draws.plays();
+    device.present();
+    return {device.lost() ? rt::ShownBy::nothing : rt::ShownBy::hand_over, 0};
+}
 
 /// What a frame that drew a selected cut says of predictions.
 void WalkStages::learn(double actual_us) {

@@ -1,4 +1,5 @@
-// The walk's frame: take the newest pose, take the newest prepared set, select, submit, account. Runs on the frame thread.
+// The walk's frame: take the newest pose, take the newest prepared set, select, submit, account, present. Runs on the frame
+// thread.
 #pragma once
 
 #include <atomic>
@@ -78,6 +79,7 @@ public:
     void submit(rt::FrameRecord& record) override;
     void finish(rt::FrameRecord& record) override;
     void account(rt::FrameRecord& record) override;
+    rt::Shown present(rt::FrameRecord& record) override;
 
 private:
     void inject(FramePhase phase, const rt::FrameRecord& record) const;

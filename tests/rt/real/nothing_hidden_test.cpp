@@ -75,8 +75,8 @@ TEST(NothingHidden, TwentyStallsOfFiftyMillisecondsAppearInFull) {
     Histogram frames;
     std::vector<std::int64_t> exact;
     for (const FrameRecord& r : records) {
-        frames.add(r.presented_ns - r.due_ns);
-        exact.push_back(r.presented_ns - r.due_ns);
+        frames.add(r.complete_ns - r.due_ns);
+        exact.push_back(r.complete_ns - r.due_ns);
     }
     std::uint64_t skipped_by_stalls = 0;
     for (const Stalling::Entry& e : stages.ledger) {
@@ -90,7 +90,7 @@ TEST(NothingHidden, TwentyStallsOfFiftyMillisecondsAppearInFull) {
         EXPECT_LE(next.skipped_before, expected + 1) << "of frame " << e.frame;
         EXPECT_GE(expected, 3U) << "fifty milliseconds are three periods of 60 Hz";
         EXPECT_TRUE(stalled.missed);
-        EXPECT_GE(stalled.presented_ns - stalled.due_ns, stall_ns);
+        EXPECT_GE(stalled.complete_ns - stalled.due_ns, stall_ns);
         skipped_by_stalls += next.skipped_before;
     }
     EXPECT_GE(skipped_by_stalls, 60U);
@@ -132,8 +132,8 @@ TEST(NothingHidden, AStopOfHalfASecondCostsThirtySlotsAndLeavesThePhase) {
             slot = r.slot;
             if (after_stop) skipped = r.skipped_before;
             after_stop = r.continued > 0;
-            if (after_stop) stopped_ns = r.presented_ns - std::max(last_end_ns, options.t0_ns);
-            last_end_ns = r.presented_ns;
+            if (after_stop) stopped_ns = r.complete_ns - std::max(last_end_ns, options.t0_ns);
+            last_end_ns = r.complete_ns;
         }
         // How long it was really stopped is between this and a period less; the signals' senders sleep no shorter than asked.
         const auto least = static_cast<std::uint32_t>(500 * ms / period_ns) - 1;

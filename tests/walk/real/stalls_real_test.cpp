@@ -37,7 +37,7 @@ TEST(MonitoredWalk, TwentyInjectedStallsOfFiftyMillisecondsAreThereInFull) {
         last_slot = frame.slot;
         skipped_after += stalled ? frame.skipped_before : 0;
         stalled = frame.selected_ns - frame.woken_ns >= stall_ns;
-        late_in_full += stalled && frame.presented_ns - frame.due_ns >= stall_ns ? 1 : 0;
+        late_in_full += stalled && frame.complete_ns - frame.due_ns >= stall_ns ? 1 : 0;
         telemetry->add(frame);
     };
     const auto outcome = walk::run_walk(request, {}, observer);
