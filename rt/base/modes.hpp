@@ -15,7 +15,7 @@ namespace surefoot::rt {
 ///           frame starts there. The slots that it ran over are skipped whole. Latency is a whole number of periods.
 /// floating: (`float`) a late frame is shown when it is done, and the next frame starts at once, in the slot that has begun.
 ///           Only slots that have passed entirely are skipped.
-/// A frame that is in time is shown at the end of its slot (lock) or when done (floating); the next starts on the next grid
+/// A frame that is in time is shown at the end of its slot (lock) or when done (floating). The next one starts on the next grid
 /// point.
 enum class LatePolicy : std::uint8_t { lock, floating };
 

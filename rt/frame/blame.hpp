@@ -37,8 +37,8 @@ Cause blame(const FrameRecord& record, const BlameLimits& limits);
 /// Whether the picture was shown later than planned, by over present_share. Of a frame that waits for nothing, false.
 bool is_shown_late(const FrameRecord& record, const BlameLimits& limits);
 
-/// The cause of a picture that was whole in time and is_shown_late(): a stop of the process, a late wake-up for it, or what
-/// presenting took. woken_late_ns: for presenting; lost_ns: while presenting, without a wait for the display.
+/// The cause of a picture that was whole in time and is_shown_late(). It is a stop of the process, a late wake-up for it, or
+/// what presenting took. woken_late_ns: for presenting; lost_ns: while presenting, without a wait for the display.
 Cause blame_showing(const FrameRecord& record, std::int64_t woken_late_ns, std::int64_t lost_ns);
 
 /// Whether the frame is late even without stolen time: stolen_ns, and a late wake-up under FIFO. After a stop of the process:

@@ -90,7 +90,9 @@ void show(const FrameLoopOptions& o, const Grid& grid, Clock& clock, FrameStages
         const DriverScope driver;
         shown = stages.present(record);
     }
+    const bool missed = record.missed;
     account.present_ended(record, shown);
+    if (record.missed && !missed && !record.control) stages.shown_late(record);
 }
 
 /// The end of the frame that the next slot is reckoned from.

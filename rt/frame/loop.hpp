@@ -44,6 +44,8 @@ public:
         static_cast<void>(record);
         return {};
     }
+    /// The picture became a miss as it was shown, after account(). Keeps what such a frame is examined by.
+    virtual void shown_late(const FrameRecord& record) { static_cast<void>(record); }
 };
 
 /// Settings of the loop. Pointers must outlive the run.

@@ -51,7 +51,7 @@ void Distribution::add_progression(const Edges& edges, std::int64_t first_ns, st
 
 std::uint64_t Figures::all_misses() const { return std::accumulate(misses.begin(), misses.end(), std::uint64_t{0}); }
 
-ShownBy Figures::told_by() const {
+ShownBy Figures::shown_by_whom() const {
     for (const ShownBy by : {ShownBy::display, ShownBy::hand_over})
         if (shown_by[static_cast<std::size_t>(by)] > 0) return by;
     return ShownBy::nothing;
@@ -152,8 +152,8 @@ void Telemetry::add_times(const FrameRecord& f) {
     const std::int64_t slack_ns = f.missed ? -late_ns(f) : f.deadline_ns - f.complete_ns;
     of(slack_ns >= 0 ? Series::slack : Series::lateness).add(edges, std::abs(slack_ns));
     // A skipped slot has no picture until this one: that is how late it is. Nothing of a stall is left out.
-    if (f.skipped_before > 0)
-        of(Series::lateness).add_progression(edges, f.complete_ns - f.due_ns, figures_.setup.period_ns, f.skipped_before);
+    const std::int64_t period_ns = figures_.setup.period_ns;
+    if (f.skipped_before > 0) of(Series::lateness).add_progression(edges, f.complete_ns - f.due_ns, period_ns, f.skipped_before);
     if (f.input_reports > reports_seen_) {
         figures_.input_reports += f.input_reports - reports_seen_;
         reports_seen_ = f.input_reports;

@@ -103,7 +103,7 @@ struct Figures {
     /// slots = frames + skipped_slots + lost_slots
     [[nodiscard]] std::uint64_t slots() const { return frames + skipped_slots + lost_slots; }
     /// Who tells when pictures are shown: the display where it told of any, else the hand-over; nothing where none was shown.
-    [[nodiscard]] ShownBy told_by() const;
+    [[nodiscard]] ShownBy shown_by_whom() const;
     /// 1 / p99 of shown_interval; 0 before the second frame.
     [[nodiscard]] double one_percent_low_hz() const;
 };

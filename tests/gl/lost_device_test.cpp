@@ -47,6 +47,7 @@ protected:
         draw(from, 2);
         device_->end_items();
         device_->finish_frame();
+        device_->present();
     }
     std::unique_ptr<gl::Device> device_;
     model::Model model_;
@@ -62,6 +63,8 @@ TEST_F(LostDevice, a_fence_that_takes_longer_than_a_wait_is_waited_for_again) {
     EXPECT_EQ(FakeGl::get().waits, 3);
     EXPECT_FALSE(device_->lost());
     device_->finish_frame();
+    EXPECT_EQ(FakeGl::get().presents, 0) << "a whole picture waits for its time";
+    device_->present();
     EXPECT_EQ(FakeGl::get().presents, 1);
 }
 

@@ -29,6 +29,9 @@ rt::FrameRecord monitored_frame(std::uint64_t i, bool late) {
     f.submitted_ns = f.selected_ns + 6'000'000;
     f.rastered_ns = f.submitted_ns + (late ? 30'000'000 : 12'000'000);
     f.complete_ns = f.rastered_ns + 100'000;
+    f.show_ns = f.handed_ns = f.deadline_ns + (late ? period_30_ns : 0);
+    f.presented_ns = f.shown_ns = f.handed_ns + 40'000;
+    f.shown_by = rt::ShownBy::hand_over;
     f.cpu_ns = 5'000'000;
     f.raster_cpu_ns = 20'000'000;
     f.missed = late;
@@ -171,6 +174,11 @@ TEST_F(MonitorPages, ReportWhatHappened) {
     EXPECT_NEAR(e.at("surefoot_frame_seconds_sum"), 90 * 0.01855 + 10 * 0.03655, 1e-9);
     EXPECT_EQ(e.at("surefoot_phase_seconds_bucket{phase=\"wake\",le=\"0.00005\"}"), 100);
     EXPECT_EQ(e.at("surefoot_slack_seconds_count") + e.at("surefoot_lateness_seconds_count"), 100);
+    EXPECT_EQ(e.at("surefoot_shown_frames_total{by=\"hand-over\"}"), 100);
+    EXPECT_EQ(e.at("surefoot_shown_frames_total{by=\"display\"}"), 0);
+    EXPECT_EQ(e.at("surefoot_shown_error_seconds_bucket{le=\"0.00002\"}"), 0);
+    EXPECT_EQ(e.at("surefoot_shown_error_seconds_bucket{le=\"0.00005\"}"), 100) << "40 us after its point of the grid";
+    EXPECT_EQ(e.at("surefoot_phase_seconds_bucket{phase=\"present\",le=\"0.00005\"}"), 100) << "what presenting took";
     EXPECT_NEAR(e.at("surefoot_budget_used_ratio"), (5e6 + 20e6 / 2) / period_30_ns, 1e-6);
     EXPECT_NEAR(e.at("surefoot_budget_seconds"), 0.026, 1e-9);
     EXPECT_EQ(e.at("surefoot_accuracy_per_radian"), 250);
@@ -243,6 +251,21 @@ TEST_F(MonitorPages, TheStatusPageIsOneLineOfJsonThatAgreesWithTheMetrics) {
     EXPECT_NEAR(j["recent"]["slack_ms"]["min"].get<double>(), 33.333333 - 36.55, 1e-3);
     EXPECT_EQ(j["recent"]["frame_ms_skipped_missed"].size(), 301U);
     EXPECT_EQ(j["version"], "1.2.3");
+    EXPECT_EQ(j["times"]["shown_by"], "hand-over");
+    EXPECT_NEAR(j["times"]["shown_error_us"]["max"].get<double>(), 40, 1e-9);
+}
+
+TEST_F(MonitorPages, WhereNothingIsShownNothingIsSaidOfIt) {
+    for (int i = 0; i < 10; ++i) {
+        auto f = monitored_frame(next_++, false);
+        f.shown_by = rt::ShownBy::nothing;
+        telemetry_->add(f);
+    }
+    const auto j = nlohmann::json::parse(status_json(page_));
+    EXPECT_TRUE(j["times"]["shown_by"].is_null());
+    EXPECT_TRUE(j["times"]["one_percent_low_hz"].is_null());
+    for (const char* name : {"shown_interval_ms", "shown_error_us", "animation_error_ms"})
+        EXPECT_TRUE(j["times"][name].is_null()) << name << ": " << j["times"][name];
 }
 
 }  // namespace

@@ -31,6 +31,8 @@ json viewed_status(int frames, const std::string& model = "/srv/models/town.walk
         f.cause = f.missed ? rt::Cause::stolen : rt::Cause::none;
         f.woken_ns = f.selected_ns = f.submitted_ns = f.due_ns + 100'000;
         f.rastered_ns = f.complete_ns = f.due_ns + (f.missed ? 25'000'000 : 10'000'000);
+        f.show_ns = f.handed_ns = f.presented_ns = f.shown_ns = f.deadline_ns + (f.missed ? 20'000'000 : 0);
+        f.shown_by = rt::ShownBy::hand_over;
         f.accuracy = 100;
         telemetry->add(f);
     }

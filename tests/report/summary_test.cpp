@@ -164,13 +164,49 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
     s.control.blocks.resize(1);
     const auto json = nlohmann::json::parse(to_json(s));
     using Keys = std::set<std::string>;
-    EXPECT_EQ(keys_of(json),
-              (Keys{"frames",      "slots",      "skipped",   "misses",         "own_misses",      "miss_causes",
-                    "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age",    "budget_ms",
-                    "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",      "switches_per_frame",
-                    "cut_hash",    "steal_ms",   "rt",        "control",        "threads",         "calibrated",
-                    "input",       "picture",    "unused_ms", "coarse_frames",  "floor_frames",    "cost_scale",
-                    "resolution",  "rest",       "samples",   "filter",         "trilinear_frames"}));
+    EXPECT_EQ(keys_of(json), (Keys{"frames",
+                                   "slots",
+                                   "skipped",
+                                   "misses",
+                                   "own_misses",
+                                   "miss_causes",
+                                   "frame_ms",
+                                   "wake_us",
+                                   "select_us",
+                                   "prepare_cpu_us",
+                                   "prepared_age",
+                                   "budget_ms",
+                                   "budget_used",
+                                   "cost_error",
+                                   "accuracy",
+                                   "triangles",
+                                   "downgrades",
+                                   "switches_per_frame",
+                                   "cut_hash",
+                                   "steal_ms",
+                                   "rt",
+                                   "control",
+                                   "threads",
+                                   "calibrated",
+                                   "input",
+                                   "picture",
+                                   "unused_ms",
+                                   "coarse_frames",
+                                   "floor_frames",
+                                   "cost_scale",
+                                   "resolution",
+                                   "rest",
+                                   "samples",
+                                   "filter",
+                                   "trilinear_frames",
+                                   "shown_by",
+                                   "shown_missing",
+                                   "shown_interval_ms",
+                                   "shown_error_us",
+                                   "animation_error_ms",
+                                   "one_percent_low_hz"}));
+    for (const char* shown : {"shown_by", "shown_interval_ms", "shown_error_us", "animation_error_ms", "one_percent_low_hz"})
+        EXPECT_TRUE(json[shown].is_null()) << shown << ": nothing was shown, so nothing is said of it";
     EXPECT_EQ(keys_of(json["rest"]), (Keys{"frames", "full_detail_frames", "samples", "full_detail_ms"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
@@ -188,6 +224,50 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
     EXPECT_EQ(json["miss_causes"]["raster"], 1);
     EXPECT_TRUE(json["control"]["p_value"].is_null()) << "no control ran";
     EXPECT_EQ(json["control"]["blocks"].size(), 1U);
+}
+
+/// As `lock` shows them: on the grid, and the last but one 2 ms after it.
+std::vector<rt::FrameRecord> shown_frames(std::size_t count) {
+    std::vector<rt::FrameRecord> frames = good_frames(count);
+    for (rt::FrameRecord& f : frames) {
+        f.show_ns = f.handed_ns = f.presented_ns = f.shown_ns = f.due_ns + period_ns;
+        f.shown_by = rt::ShownBy::hand_over;
+    }
+    frames[count - 2].presented_ns = frames[count - 2].shown_ns += 2'000'000;
+    return frames;
+}
+
+TEST(Summary, ShownTimesAreMeasuredAndSayWhoToldThem) {
+    WalkSummary s;
+    s.late_policy = "lock";
+    summarize(shown_frames(200), period_ns, s);
+    auto json = nlohmann::json::parse(to_json(s));
+    EXPECT_EQ(json["shown_by"], "hand-over");
+    EXPECT_FALSE(json.contains("shown_missing"));
+    EXPECT_NEAR(json["shown_interval_ms"]["p50"].get<double>(), 33.333, 1e-3);
+    EXPECT_NEAR(json["shown_interval_ms"]["max"].get<double>(), 35.333, 1e-3);
+    EXPECT_NEAR(json["animation_error_ms"]["max"].get<double>(), 2, 1e-3) << "the poses are a period apart";
+    EXPECT_EQ(json["shown_error_us"]["p50"], 0);
+    EXPECT_EQ(json["shown_error_us"]["max"], 2000);
+    EXPECT_NE(to_table(s, false).find("picture to picture, by hand-over"), std::string::npos);
+    s.late_policy = "float";  // no picture is planned for a point of the grid
+    summarize(shown_frames(200), period_ns, s);
+    json = nlohmann::json::parse(to_json(s));
+    EXPECT_TRUE(json["shown_error_us"].is_null());
+    EXPECT_FALSE(json["shown_interval_ms"].is_null());
+}
+
+TEST(Summary, AnIntervalNeedsTwoPicturesThatFollowOneAnother) {
+    std::vector<rt::FrameRecord> frames = shown_frames(4);
+    frames[1].shown_by = rt::ShownBy::nothing;
+    WalkSummary s;
+    s.late_policy = "lock";
+    summarize(frames, period_ns, s);
+    EXPECT_NEAR(s.shown.interval_ms.max, 31.333, 1e-3) << "the last one alone: the first is followed by none that was shown";
+    frames[1] = frames[0];
+    frames[1].control = true;
+    summarize(frames, period_ns, s);
+    EXPECT_NEAR(s.shown.interval_ms.max, 31.333, 1e-3) << "a bare frame lies between";
 }
 
 TEST(Summary, SamplesAndFilterAreTheWalks) {

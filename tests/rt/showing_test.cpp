@@ -23,6 +23,7 @@ public:
     explicit ShownStages(VirtualClock& c) : clock(c) {}
     VirtualClock& clock;
     std::function<void(const FrameRecord&)> in_submit, in_present;
+    std::vector<std::uint64_t> late;
     Shown shown{ShownBy::hand_over, 0};
 
     void sample(FrameRecord&) override {}
@@ -37,6 +38,7 @@ public:
         if (in_present) in_present(r);
         return shown;
     }
+    void shown_late(const FrameRecord& r) override { late.push_back(r.frame); }
 };
 
 struct ShownWalk {
@@ -71,6 +73,7 @@ struct ShownWalk {
             EXPECT_EQ(r.skipped_before, r.frame == waiting_frame + 1 ? 1U : 0U) << r.frame;
             EXPECT_EQ(r.complete_ns - r.due_ns, 6 * ms) << r.frame;
         }
+        EXPECT_EQ(stages.late, std::vector<std::uint64_t>{waiting_frame}) << "it can be examined";
     }
 };
 

@@ -119,7 +119,7 @@ ordered_json times_json(const Figures& f) {
                                                {"input_age_ms", Series::input_age, to_ms},
                                                {"input_to_shown_ms", Series::input_to_shown, to_ms}})
         j[name] = distribution_json(f.of(series).fine, per_ns);
-    const rt::ShownBy by = f.told_by();
+    const rt::ShownBy by = f.shown_by_whom();
     j["shown_by"] = by == rt::ShownBy::nothing ? ordered_json(nullptr) : ordered_json(rt::name_of(by));
     j["one_percent_low_hz"] = f.of(Series::shown_interval).fine.count() > 0 ? ordered_json(f.one_percent_low_hz()) : nullptr;
     return j;

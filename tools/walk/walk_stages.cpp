@@ -289,6 +289,8 @@ void WalkStages::submit(rt::FrameRecord& record) {
     record.rastered_ns = begun_ns + static_cast<std::int64_t>(report_.finished_us * 1e3);
 }
 
+void WalkStages::shown_late(const rt::FrameRecord& record) { keep(record); }
+
 /// What predictions of this frame's items are to be multiplied by. Where the in-frame check found them wrong, what it found
 /// counts.
 double WalkStages::cost_factor(const rt::FrameRecord& record, double actual_us) const {

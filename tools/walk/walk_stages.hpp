@@ -80,6 +80,7 @@ public:
     void finish(rt::FrameRecord& record) override;
     void account(rt::FrameRecord& record) override;
     rt::Shown present(rt::FrameRecord& record) override;
+    void shown_late(const rt::FrameRecord& record) override;
 
 private:
     void inject(FramePhase phase, const rt::FrameRecord& record) const;
