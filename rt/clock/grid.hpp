@@ -8,13 +8,14 @@
 
 namespace surefoot::rt {
 
-/// Slot k is due (may start) at t0 + k * period, and its deadline is due + period. Integer nanoseconds: no drift.
+/// Slot k is due (may start) at t0 + (k - slot0) * period, and its deadline is due + period. Integer nanoseconds: no drift.
 struct Grid {
     std::int64_t t0_ns = 0;
     std::int64_t period_ns = 1;  ///< > 0
+    std::uint64_t slot0 = 0;     ///< due at t0: 0, unless a display moves the grid
 
     [[nodiscard]] constexpr std::int64_t due_ns(std::uint64_t slot) const {
-        return t0_ns + static_cast<std::int64_t>(slot) * period_ns;
+        return t0_ns + static_cast<std::int64_t>(slot - slot0) * period_ns;
     }
     [[nodiscard]] constexpr std::int64_t deadline_ns(std::uint64_t slot) const { return due_ns(slot) + period_ns; }
 };

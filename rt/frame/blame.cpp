@@ -72,7 +72,8 @@ Cause blame(const FrameRecord& record, const BlameLimits& limits) {
 }
 
 bool is_shown_late(const FrameRecord& record, const BlameLimits& limits) {
-    return record.show_ns > 0 && over_share(record.presented_ns - record.show_ns, limits.present_share, limits.period_ns) > 0;
+    const std::int64_t shown_ns = record.shown_by == ShownBy::display ? record.shown_ns : record.presented_ns;
+    return record.show_ns > 0 && over_share(shown_ns - record.show_ns, limits.present_share, limits.period_ns) > 0;
 }
 
 Cause blame_showing(const FrameRecord& record, std::int64_t woken_late_ns, std::int64_t lost_ns) {

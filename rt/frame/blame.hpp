@@ -34,7 +34,8 @@ struct BlameLimits {
 /// furthest over its share. If no single cause qualifies: the largest excess over a share.
 Cause blame(const FrameRecord& record, const BlameLimits& limits);
 
-/// Whether the picture was shown later than planned, by over present_share. Of a frame that waits for nothing, false.
+/// Whether the picture was shown later than planned, by over present_share: as the display says, else by the end of presenting.
+/// Where pictures are not presented, false.
 bool is_shown_late(const FrameRecord& record, const BlameLimits& limits);
 
 /// The cause of a picture that was whole in time and is_shown_late(). It is a stop of the process, a late wake-up for it, or

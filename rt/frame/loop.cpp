@@ -106,6 +106,14 @@ std::int64_t taken_by_presenting_ns(const FrameRecord& r, std::int64_t start_ns)
     return r.presented_ns > start_ns ? std::max<std::int64_t>(0, r.presented_ns - std::max(r.handed_ns, r.show_ns)) : 0;
 }
 
+/// A picture that was handed over at its time, and missed its refresh, needed more.
+void learn_lead(const FrameRecord& r, const BlameLimits& limits, std::int64_t lead_ns, PresentLead& lead) {
+    if (r.control) return;
+    if (r.shown_by != ShownBy::display) return lead.add(r.presented_ns - r.handed_ns);
+    constexpr std::int64_t late_wake_ns = 200'000;
+    if (r.handed_ns <= r.show_ns - lead_ns + late_wake_ns) lead.add_flip(is_shown_late(r, limits));
+}
+
 void hand_over(const FrameLoopOptions& o, const FrameRecord& record, SpscRing<FrameRecord>& records) {
     while (o.wait_for_ring && records.full()) sched_yield();
     records.try_push(record);
@@ -117,12 +125,13 @@ std::atomic<std::uint32_t> continue_count{0};
 
 FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, FrameStages& stages,
                                SpscRing<FrameRecord>& records) {
-    const Grid grid{options.t0_ns != 0 ? options.t0_ns : clock.now_ns() + options.period_ns, options.period_ns};
+    Grid grid{options.t0_ns != 0 ? options.t0_ns : clock.now_ns() + options.period_ns, options.period_ns};
     const OwnScope own;
     FrameAccount account(options, clock);
     BurnMeter burn;
-    PresentLead lead(options.period_ns);
+    PresentLead lead(options.period_ns, options.display != nullptr);
     LoopState s;
+    s.lead_ns = lead.ns();
     s.ready_ns = grid.t0_ns;
     while (goes_on(options, s)) {
         FrameRecord record = new_record(options, grid, s);
@@ -135,13 +144,17 @@ FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, Fr
         }
         if (options.shows) {
             show(options, grid, clock, stages, account, s.lead_ns, record);
-            if (!record.control) lead.add(record.presented_ns - record.handed_ns);
+            learn_lead(record, account.limits(), s.lead_ns, lead);
         }
         account.before_push(record);
         hand_over(options, record, records);
 
-        const NextSlot next = next_slot(grid, options.late, s.slot, ended_ns(options, account.limits(), record));
+        NextSlot next = next_slot(grid, options.late, s.slot, ended_ns(options, account.limits(), record));
         CHECK(next.slot > s.slot, "The next slot comes after this one");
+        if (options.display != nullptr && record.shown_by == ShownBy::display) {
+            grid = options.display->follow(grid, record.shown_ns, next.slot);
+            if (options.late == LatePolicy::lock) next.start_ns = grid.due_ns(next.slot);
+        }
         s.slot = next.slot;
         s.skipped_before = next.skipped;
         s.ready_ns = next.start_ns + taken_by_presenting_ns(record, next.start_ns);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "rt/clock/clock.hpp"
+#include "rt/clock/display_clock.hpp"
 #include "rt/clock/grid.hpp"
 #include "rt/exchange/spsc_ring.hpp"
 #include "rt/frame/blame.hpp"
@@ -56,6 +57,8 @@ struct FrameLoopOptions {
     LatePolicy late = LatePolicy::lock;
     /// Pictures are presented, and judged by when that is done. False (the virtual clock): a frame ends when it is whole.
     bool shows = false;
+    /// Moves the grid after each picture that the display told of; null: the grid stands. Its first grid is this one's.
+    DisplayClock* display = nullptr;
     const ControlSchedule* control = nullptr;   ///< not null: ends after its last block
     const std::atomic<bool>* stop = nullptr;    ///< read once a frame
     const std::atomic<bool>* failed = nullptr;  ///< the same; set when the stages cannot continue

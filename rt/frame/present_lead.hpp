@@ -1,4 +1,4 @@
-// How long presenting takes: so much earlier than the grid a picture is handed over, so that it is shown on it.
+// How much before its time a picture is handed over, so that it is shown at it.
 #pragma once
 
 #include <algorithm>
@@ -8,18 +8,29 @@
 
 namespace surefoot::rt {
 
-/// The median of the last 15 times, at most a tenth of the period. A display that waits now and then does not change it.
+/// Where the display does not tell: what presenting takes, the median of the last 15 times and at most a tenth of the period. A
+/// display that waits now and then does not change it. Where it tells: a millisecond, and half as much again after each picture
+/// that was not early enough, up to a fifth of the period.
 class PresentLead {
 public:
-    explicit PresentLead(std::int64_t period_ns) : max_ns_(period_ns / 10) {}
-    /// 0 until the window is full.
+    /// tells: the display does. Else the lead is 0 until the window is full.
+    PresentLead(std::int64_t period_ns, bool tells) : period_ns_(period_ns) {
+        if (tells) add_flip(false);
+    }
     [[nodiscard]] std::int64_t ns() const { return lead_ns_; }
+    /// Presenting took so long.
     void add(std::int64_t took_ns) {
         took_[count_++ % window] = took_ns;
         if (count_ < window) return;
         std::array<std::int64_t, window> sorted = took_;
         std::nth_element(sorted.begin(), sorted.begin() + window / 2, sorted.end());
-        lead_ns_ = std::clamp<std::int64_t>(sorted[window / 2], 0, max_ns_);
+        lead_ns_ = std::clamp<std::int64_t>(sorted[window / 2], 0, period_ns_ / 10);
+    }
+    /// The display told of a picture that was handed over as early as planned. late: it missed its refresh all the same.
+    void add_flip(bool late) {
+        constexpr std::int64_t first_ns = 1'000'000;
+        const std::int64_t wanted_ns = late ? lead_ns_ + lead_ns_ / 2 : lead_ns_;
+        lead_ns_ = std::min(std::max(wanted_ns, first_ns), period_ns_ / 5);
     }
 
 private:
@@ -27,7 +38,7 @@ private:
     std::array<std::int64_t, window> took_{};
     std::size_t count_ = 0;
     std::int64_t lead_ns_ = 0;
-    std::int64_t max_ns_;
+    std::int64_t period_ns_;
 };
 
 }  // namespace surefoot::rt

@@ -78,8 +78,10 @@ void PrepareThread::run() {
     const std::int64_t step_ns = jump_poses_ != nullptr ? grid_.period_ns / 8 : grid_.period_ns;
     while (!stopping_.load(std::memory_order_relaxed)) {
         prepare_newest();
-        // The steps are counted from each frame's start, so that one of them is always where it is without them.
-        const std::int64_t begun_ns = grid_.t0_ns + offset_ns, now = clock.now_ns();
+        // The steps are counted from each frame's start, so that one of them is always where it is without them. The newest
+        // frame says where the grid is: a display may move it.
+        const bool begun = poses_.front().valid && poses_.front().time_ns >= grid_.t0_ns;
+        const std::int64_t begun_ns = (begun ? poses_.front().time_ns : grid_.t0_ns) + offset_ns, now = clock.now_ns();
         if (now < begun_ns) {
             clock.sleep_until_ns(std::min(now + grid_.period_ns / 8, begun_ns));  // rehearsed frames come at any time
             continue;
