@@ -17,12 +17,6 @@
 
 namespace surefoot::rt {
 
-/// What became of a picture that was presented. time_ns: when the display showed it, where it tells (`display`).
-struct Shown {
-    ShownBy by = ShownBy::nothing;
-    std::int64_t time_ns = 0;
-};
-
 /// The stages of a frame, called in this order on the frame thread. The record has slot, frame, due_ns, deadline_ns, woken_ns and
 /// skipped_before. Own code in them must not allocate, lock or fault.
 class FrameStages {

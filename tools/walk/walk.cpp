@@ -33,6 +33,7 @@ WalkStagesOptions stages_options(Session& s) {
     if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;
     o.capture_missed = s.request.capture_file.empty() && s.observer.on_missed_frame;
     if (s.observer.inject) o.inject = &s.observer.inject;
+    o.display = s.observer.display;
     o.lost = &s.lost;
     return o;
 }
@@ -82,6 +83,7 @@ rt::FrameLoopOptions loop_options(const Session& s, const Progress& progress) {
     o.frames = s.frames;
     o.late = s.request.late;
     o.shows = !s.virtual_clock;
+    o.display = s.display ? &*s.display : nullptr;
     o.control = s.request.control ? &s.control : nullptr;
     o.stop = progress.stop;
     o.failed = &s.lost;
@@ -128,7 +130,10 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     // Far enough ahead that all threads are in place before the first slot, and the first view is rehearsed.
     constexpr std::int64_t in_place_ns = 300'000'000, max_rehearsal_ns = 1'200'000'000;
     const std::int64_t ahead_ns = in_place_ns + std::min(rehearsed_frames * s.grid.period_ns, max_rehearsal_ns);
-    s.grid.t0_ns = s.virtual_clock ? s.grid.period_ns : real.now_ns() + ahead_ns;
+    if (s.display)
+        s.grid = s.display->grid_from(real.now_ns() + ahead_ns);
+    else
+        s.grid.t0_ns = s.virtual_clock ? s.grid.period_ns : real.now_ns() + ahead_ns;
     s.on_frame_core = on_frame_core(s.plan, s.rasterisers);
     const rt::FrameLoopOptions options = loop_options(s, progress);
 

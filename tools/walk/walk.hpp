@@ -78,6 +78,13 @@ enum class FramePhase : std::uint8_t { sample, select, submit, finish, present }
 enum class Fault : std::uint8_t { none, context_lost };
 using FaultHook = std::function<Fault(FramePhase, const rt::FrameRecord&)>;
 
+/// A display that takes the pictures in the device's place: of tests, to which it tells when it showed them. present() is called
+/// on the frame thread, at the time of showing; it returns when the picture is shown.
+struct TestDisplay {
+    rt::Refreshes refreshes;
+    std::function<rt::Shown(const rt::FrameRecord&)> present;
+};
+
 /// Known when all threads are in place; the spans are valid during the call only.
 struct WalkStart {
     std::int64_t t0_ns = 0, period_ns = 0;  ///< slot k is due at t0 + k * period
@@ -99,6 +106,7 @@ struct WalkObserver {
     /// since the last call. Not for frames drawn from coarse levels, nor beside capture_file, nor of the largest models.
     std::function<void(const capture::Capture&)> on_missed_frame;
     FaultHook inject;
+    const TestDisplay* display = nullptr;  ///< real clock only; its refresh is a whole multiple of the rate
 };
 
 /// Errors, all before the first frame: unreadable model, path, recording or steering file, no context, --strict without real

@@ -26,6 +26,11 @@ Result<void> read_request(Session& s) {
     auto period = rt::period_of_rate_ns(s.request.rate_hz);
     if (!period) return period.error();
     s.grid.period_ns = *period;
+    if (s.observer.display != nullptr && !s.virtual_clock) {
+        auto refreshes = rt::refreshes_per_slot(s.observer.display->refreshes, s.request.rate_hz);
+        if (!refreshes) return refreshes.error();
+        s.display.emplace(s.observer.display->refreshes, *refreshes);
+    }
     return check_request(s.request);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/engine.hpp"
+#include "rt/clock/display_clock.hpp"
 #include "rt/clock/grid.hpp"
 #include "rt/exchange/triple_buffer.hpp"
 #include "rt/frame/control.hpp"
@@ -43,7 +44,8 @@ struct Session {
     std::unique_ptr<InputSession> input;  ///< null: the path is followed
     std::vector<std::string> notes;
     rt::Grid grid;
-    std::uint64_t frames = 0;  ///< 0: until stopped
+    std::optional<rt::DisplayClock> display;  ///< where a display tells when it shows pictures
+    std::uint64_t frames = 0;                 ///< 0: until stopped
     std::vector<pid_t> rasterisers;
     std::vector<pid_t> on_frame_core;  ///< those of them that share the frame thread's core
     KeptFrame kept;

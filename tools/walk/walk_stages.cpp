@@ -309,6 +309,7 @@ void WalkStages::finish(rt::FrameRecord& record) {
 
 rt::Shown WalkStages::present(rt::FrameRecord& record) {
     inject(FramePhase::present, record);
+    if (options_.display != nullptr) return options_.display->present(record);
     gl::Device& device = engine_.device();
     device.draws.plays();
     device.present();

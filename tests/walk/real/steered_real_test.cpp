@@ -90,6 +90,10 @@ TEST(SteeredRealWalk, TenThousandReportsReachTheirFramesInTimeThroughTheInputThr
                 in.age_ms.max, wake_ms);
     EXPECT_LE(in.age_ms.p50, 1.5 * period_ms);
     EXPECT_LE(in.age_ms.p99, 2 * period_ms + wake_ms);
+    std::printf("report to picture shown: p50 %.1f ms, p99 %.1f, at most %.1f\n", in.to_shown_ms.p50, in.to_shown_ms.p99,
+                in.to_shown_ms.max);
+    EXPECT_LE(in.to_shown_ms.p50, 2 * period_ms);
+    EXPECT_LE(in.to_shown_ms.p99, 100);
 }
 
 TEST(SteeredRealWalk, AViewpointIsPreparedBeforeItIsShown) {
