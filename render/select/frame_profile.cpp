@@ -11,6 +11,7 @@ namespace {
 constexpr double slowly = 1.0 / 8;  // of a sample counts where that makes frames look better
 constexpr double min_tail = 0.15;   // of the limit: what is left of a frame says nothing when it is shorter
 constexpr double max_ratio = 4;
+constexpr double stall_ratio = 2;  // of a rest: in one frame alone it is a stall of the machine
 
 std::size_t bin_of(double us, double limit_us) {
     const double at = us / limit_us * static_cast<double>(FrameProfile::bins);
@@ -41,7 +42,14 @@ void FrameProfile::finish(double end_us, double end_predicted_us, double limit_u
         Usual& usual = usual_[point.bin];
         if (point.predicted_us > 0) learn(point.finished_us / point.predicted_us, slowly, 1.0, usual.head);
         const double predicted_us = end_predicted_us - point.predicted_us;
-        if (predicted_us > min_tail * limit_us) learn((end_us - point.finished_us) / predicted_us, 1.0, slowly, usual.tail);
+        if (!(predicted_us > min_tail * limit_us)) {
+            learn(1.0, 1.0, slowly, usual.tail);  // it may be wrong by now, and this frame could not tell
+            continue;
+        }
+        const double tail = (end_us - point.finished_us) / predicted_us;
+        const bool stalled = tail > stall_ratio;
+        if (!stalled || stalled_[point.bin]) learn(tail, 1.0, slowly, usual.tail);
+        stalled_[point.bin] = stalled;
     }
     count_ = 0;
 }

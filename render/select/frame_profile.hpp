@@ -8,8 +8,9 @@
 namespace surefoot::select {
 
 /// Learnt from each check of each frame, in sixteenths of a limit that stays, by the predicted time of what was finished. It
-/// forgives little: what makes frames look better is learnt over about eight frames and forgotten at once. Used by the thread
-/// that draws. A fixed size, no allocation.
+/// forgives little: what makes frames look better is learnt over about eight frames and forgotten at once. A rest that took over
+/// twice its time in one frame alone was a stall, and says nothing. What frames no longer show, since all after a check was drawn
+/// coarse, is forgotten over about eight frames. Used by the thread that draws. A fixed size, no allocation.
 class FrameProfile {
 public:
     static constexpr std::size_t bins = 16;
@@ -33,6 +34,7 @@ private:
         double finished_us = 0, predicted_us = 0;
     };
     std::array<Usual, bins> usual_{};
+    std::array<bool, bins> stalled_{};  ///< the last frame that told had a rest of over twice its time
     std::array<Point, bins> points_{};
     std::size_t count_ = 0;
 };

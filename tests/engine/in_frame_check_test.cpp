@@ -45,15 +45,18 @@ TEST_F(InFrameCheck, DoesSoForTheFormsOfTheLastCut) {
     EXPECT_EQ(draw_last(whole.predicted_us + 2 * engine->options().slice_us).downgraded_slices, 0U);
 }
 
-/// On this clock all takes `slow` times as long as the device charges.
+/// On this clock all takes `slow` times as long as the device charges. It stands still once, for stall_us, when so much has been
+/// charged.
 struct SlowClock {
     gl::Device* device = nullptr;
     double slow = 1;
+    double stall_at_us = 1e18, stall_us = 0;
 
     static std::int64_t now_ns(void* context) {
         const auto& clock = *static_cast<const SlowClock*>(context);
         clock.device->draws.plays();
-        return static_cast<std::int64_t>(1e3 * clock.slow * clock.device->charged_us());
+        const double charged_us = clock.device->charged_us();
+        return static_cast<std::int64_t>(1e3 * (clock.slow * charged_us + (charged_us > clock.stall_at_us ? clock.stall_us : 0)));
     }
 };
 
@@ -76,6 +79,28 @@ TEST_F(InFrameCheck, WhatFramesUsuallyDoLetsNoneMissItsDeadline) {
         coarse += report.downgraded_slices > 0 ? 1 : 0;
     }
     EXPECT_GE(coarse, 75) << "30 slow ones, 15 of those to and fro, 30 far too slow";
+}
+
+/// A machine that stands still for 50 ms now and then must not make the pictures of the next seconds coarse.
+TEST_F(InFrameCheck, AStallOfTheMachineCostsItsOwnFrameAlone) {
+    const SubmitReport whole = draw(ample_us);
+    for (const double share : {0.1, 0.4, 0.7}) {
+        SlowClock clock{&engine->device(), 1};
+        SubmitLimits limits{.limit_us = 1.3 * whole.predicted_us, .deadline_us = 1.5 * whole.predicted_us};
+        limits.now_ns = SlowClock::now_ns;
+        limits.now_context = &clock;
+        int coarse = 0;
+        for (int i = 0; i < 60; ++i) {
+            if (i == 30) {
+                clock.stall_at_us = engine->device().charged_us() + share * whole.predicted_us;
+                clock.stall_us = 3 * whole.predicted_us;
+            }
+            engine->select(prepared, ample_us, {1, 1}, 0);
+            const SubmitReport report = engine->submit(pose, limits);
+            if (i != 30) coarse += report.downgraded_slices > 0 ? 1 : 0;
+        }
+        EXPECT_EQ(coarse, 0) << "after a stall at " << share << " of the frame";
+    }
 }
 
 }  // namespace

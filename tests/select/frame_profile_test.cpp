@@ -78,6 +78,34 @@ TEST(FrameProfile, FramesThatAreLateToTheEndCountAsLateAtOnce) {
     EXPECT_GT(profile.at(8'000, frame_limit_us).tail, 1.4) << "forgotten slowly";
 }
 
+TEST(FrameProfile, OneStalledFrameTeachesNothingAndTwoDo) {
+    FrameProfile profile;
+    draw_frames(profile, 10, 1.0);
+    draw_frames(profile, 1, 1.0, 60'000);  // the rest took 3.25 times as long: the machine stood still
+    EXPECT_EQ(profile.at(8'000, frame_limit_us).tail, 1.0);
+    draw_frames(profile, 1, 1.0);
+    draw_frames(profile, 1, 1.0, 60'000);
+    EXPECT_EQ(profile.at(8'000, frame_limit_us).tail, 1.0) << "alone again";
+    draw_frames(profile, 1, 1.0, 60'000);
+    EXPECT_GT(profile.at(8'000, frame_limit_us).tail, 3.0) << "the second in a row";
+}
+
+/// Else no frame would draw the rest again, and none would learn.
+TEST(FrameProfile, ALatenessThatCoarseFramesCannotSeeIsForgotten) {
+    FrameProfile profile;
+    draw_frames(profile, 2, 1.0, 60'000);
+    EXPECT_FALSE(still_fits(middle(1.0, profile)));
+    int coarse = 0;
+    while (coarse < 100 && !still_fits(middle(1.0, profile))) {
+        profile.begin();
+        profile.note(8'000, 8'000, frame_limit_us);
+        profile.finish(11'000, 11'000, frame_limit_us);  // all after the check was drawn coarse
+        ++coarse;
+    }
+    EXPECT_LE(coarse, 20);
+    EXPECT_GE(coarse, 5) << "not at once: it may be so";
+}
+
 TEST(FrameProfile, OneFrameAsPredictedEndsWhatWasForgiven) {
     FrameProfile profile;
     draw_frames(profile, 60, 1.7);
