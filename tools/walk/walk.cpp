@@ -76,7 +76,7 @@ void end_input(Session& s, const Progress& progress) {
         s.facts.degraded.push_back({rt::LackKind::placing, misplaced->place + ": " + misplaced->what, misplaced->remedy});
 }
 
-rt::FrameLoopOptions loop_options(const Session& s, const Progress& progress) {
+rt::FrameLoopOptions loop_options(Session& s, const Progress& progress) {
     rt::FrameLoopOptions o;
     o.period_ns = s.grid.period_ns;
     o.t0_ns = s.grid.t0_ns;

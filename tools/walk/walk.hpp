@@ -14,6 +14,7 @@
 #include "render/select/select.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
+#include "rt/clock/display_clock.hpp"
 #include "rt/frame/record.hpp"
 #include "tools/report/report.hpp"
 
