@@ -101,6 +101,7 @@ std::size_t Engine::drawn_capacity() const {
 }
 
 void Engine::reserve(prepare::PreparedFrame& frame) const { impl_->preparer->reserve(frame); }
+void Engine::end_workers() { impl_->preparer->end_workers(); }
 
 void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
                      prepare::PreparedFrame& out, const PrepareHints& hints) {

@@ -117,6 +117,8 @@ public:
     [[nodiscard]] const EngineOptions& options() const;
 
     void reserve(prepare::PreparedFrame& frame) const;
+    /// Ends the threads that help to prepare: what is left of the engine ends without them.
+    void end_workers();
     void prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
                  prepare::PreparedFrame& out, const PrepareHints& hints = {});
 

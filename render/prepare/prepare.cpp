@@ -367,6 +367,7 @@ Preparer::Preparer(const model::Model& model, const model::CostModel& costs, con
     reserve(impl_->tried);
 }
 Preparer::~Preparer() = default;
+void Preparer::end_workers() { impl_->workers.end(); }
 
 const model::ItemCosts& Preparer::item_costs() const { return impl_->evaluator.item_costs(); }
 

@@ -144,6 +144,9 @@ public:
     /// Predicts the costs of the choices.
     [[nodiscard]] const model::ItemCosts& item_costs() const;
 
+    /// Ends the worker threads; run() then works on the caller alone. A destructor does it too.
+    void end_workers();
+
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;

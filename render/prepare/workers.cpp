@@ -78,12 +78,15 @@ Workers::Workers(int count, WorkerHooks hooks) : hooks_(std::move(hooks)) {
     start_all(count - 1);
 }
 
-Workers::~Workers() {
+Workers::~Workers() { end(); }
+
+void Workers::end() {
     observer_.reset();
     arena_.reset();
     more_than_cores_.reset();
     // Else they would wait, still in their places, for a next walk that may want fewer. False where others use the library too.
     if (handle_) (void)tbb::finalize(handle_, std::nothrow);
+    handle_ = {};
 }
 
 /// As many tasks as workers, none of which ends before all have begun: so each worker has one. They lie ready before a worker

@@ -25,6 +25,9 @@ public:
     /// Null if the caller is the only worker.
     [[nodiscard]] tbb::task_arena* arena() { return arena_ ? &*arena_ : nullptr; }
 
+    /// Ends the threads. The caller is the only worker from now on.
+    void end();
+
 private:
     class Observer final : public tbb::task_scheduler_observer {
     public:

@@ -76,12 +76,13 @@ bool is_shown_late(const FrameRecord& record, const BlameLimits& limits) {
     return record.show_ns > 0 && over_share(shown_ns - record.show_ns, limits.present_share, limits.period_ns) > 0;
 }
 
-Cause blame_showing(const FrameRecord& record, std::int64_t woken_late_ns, std::int64_t lost_ns) {
+Cause blame_showing(const FrameRecord& record, const ShowingDelays& delays) {
     if (record.continued > 0) return Cause::stopped;
-    const std::int64_t presenting_ns = record.presented_ns - record.handed_ns;
-    if (woken_late_ns >= presenting_ns) return Cause::woken_late;
-    if (2 * lost_ns < presenting_ns) return Cause::present;
-    return record.preempted_ns >= lost_ns ? Cause::preempted : Cause::stolen;
+    const std::array<Excess, 4> causes = {{{Cause::preempted, delays.preempted_ns},
+                                           {Cause::stolen, delays.stolen_ns},
+                                           {Cause::woken_late, delays.woken_late_ns},
+                                           {Cause::present, delays.beyond_lead_ns}}};
+    return std::ranges::max_element(causes, {}, &Excess::over_ns)->cause;
 }
 
 bool is_own_miss(const FrameRecord& record, const BlameLimits& limits) {

@@ -34,13 +34,25 @@ struct BlameLimits {
 /// furthest over its share. If no single cause qualifies: the largest excess over a share.
 Cause blame(const FrameRecord& record, const BlameLimits& limits);
 
+/// So much later than planned a picture may be shown.
+inline std::int64_t shown_tolerance_ns(const BlameLimits& limits) {
+    return static_cast<std::int64_t>(limits.present_share * static_cast<double>(limits.period_ns));
+}
+
 /// Whether the picture was shown later than planned, by over present_share: as the display says, else by the end of presenting.
 /// Where pictures are not presented, false.
 bool is_shown_late(const FrameRecord& record, const BlameLimits& limits);
 
-/// The cause of a picture that was whole in time and is_shown_late(). It is a stop of the process, a late wake-up for it, or
-/// what presenting took. woken_late_ns: for presenting; lost_ns: while presenting, without a wait for the display.
-Cause blame_showing(const FrameRecord& record, std::int64_t woken_late_ns, std::int64_t lost_ns);
+/// What delayed a picture that was whole in time, ns.
+struct ShowingDelays {
+    std::int64_t woken_late_ns = 0;   ///< for presenting
+    std::int64_t stolen_ns = 0;       ///< since it was whole, without the waits for the display
+    std::int64_t preempted_ns = 0;    ///< the same, with involuntary switches
+    std::int64_t beyond_lead_ns = 0;  ///< of presenting, more than was planned; and of this program's own work before it
+};
+
+/// The cause of a picture that was whole in time and is_shown_late(): a stop of the process, else the largest of the delays.
+Cause blame_showing(const FrameRecord& record, const ShowingDelays& delays);
 
 /// Whether the frame is late even without stolen time: stolen_ns, and a late wake-up under FIFO. After a stop of the process:
 /// every gap, and a late wake-up under any policy.

@@ -116,31 +116,59 @@ void FrameAccount::close(FrameRecord& record) {
     record.cause = blame(record, limits_);
 }
 
+void FrameAccount::before_showing(const FrameRecord& record) {
+    const ThreadUsage since = clock_.usage() - ended_;
+    lost_before_showing_ = lost(clock_.now_ns() - record.complete_ns, since);
+}
+
 void FrameAccount::present_begins(FrameRecord& record, std::int64_t begins_ns) {
     record.handed_ns = clock_.now_ns();
     woken_late_ns_ = record.handed_ns - begins_ns;
     handed_ = clock_.usage();
 }
 
-void FrameAccount::present_ended(FrameRecord& record, Shown shown) {
+/// A gap in which the thread slept is a wait. After the last fence it is for the display, or for its driver's own threads.
+FrameAccount::Lost FrameAccount::lost(std::int64_t wall_ns, const ThreadUsage& used) {
+    const std::int64_t gap = std::max<std::int64_t>(wall_ns - used.cpu_ns, 0);
+    if (used.voluntary > 0) return {gap, 0, 0};
+    return used.involuntary > 0 ? Lost{0, 0, gap} : Lost{0, gap, 0};
+}
+
+/// How much later than planned nothing but this program let the picture wait: it kept the thread busy.
+std::int64_t FrameAccount::lock_begins_late_ns(const FrameRecord& record, std::int64_t lead_ns) const {
+    if (options_.late == LatePolicy::floating) return 0;
+    return std::max<std::int64_t>(record.handed_ns - woken_late_ns_ - (record.show_ns - lead_ns), 0);
+}
+
+void FrameAccount::present_ended(FrameRecord& record, Shown shown, std::int64_t lead_ns) {
     read_end(record.presented_ns, record);
     const ThreadUsage driver = clock_.usage() - handed_;
     record.shown_by = shown.by;
     if (shown.by == ShownBy::display) record.shown_ns = shown.time_ns;
     if (shown.by == ShownBy::hand_over) record.shown_ns = record.presented_ns;
-
-    // After the last fence a thread that sleeps in the driver waits for the display. All else of the gap was lost.
-    const std::int64_t gap = std::max<std::int64_t>(record.presented_ns - record.handed_ns - driver.cpu_ns, 0);
-    const bool waits = driver.voluntary > 0;
-    (waits ? record.waited_ns : driver.involuntary > 0 ? record.preempted_ns : record.stolen_ns) += gap;
     record.voluntary += small(driver.voluntary);
     record.involuntary += small(driver.involuntary);
     record.driver_faults += small(driver.minor_faults + driver.major_faults);
     before_ = before_ + driver;
-
     if (record.missed || !is_shown_late(record, limits_)) return;
+
+    const std::int64_t presenting_ns = record.presented_ns - record.handed_ns;
+    const Lost here = lost(presenting_ns, driver);
+    ShowingDelays delays;
+    delays.woken_late_ns = woken_late_ns_;
+    delays.stolen_ns = here.stolen_ns + lost_before_showing_.stolen_ns;
+    delays.preempted_ns = here.preempted_ns + lost_before_showing_.preempted_ns;
+    // Where a display tells, presenting holds the wait for a refresh: one that was missed by what came before is not its doing.
+    const bool by_others =
+        shown.by == ShownBy::display && record.handed_ns > record.show_ns - lead_ns + shown_tolerance_ns(limits_);
+    const std::int64_t own_ns =
+        lock_begins_late_ns(record, lead_ns) - lost_before_showing_.stolen_ns - lost_before_showing_.preempted_ns;
+    delays.beyond_lead_ns = std::max<std::int64_t>(own_ns, 0);
+    if (!by_others) delays.beyond_lead_ns += presenting_ns - lead_ns - here.stolen_ns - here.preempted_ns;
+    record.stolen_ns += delays.stolen_ns;
+    record.preempted_ns += delays.preempted_ns;
     record.missed = true;
-    record.cause = blame_showing(record, woken_late_ns_, waits ? 0 : gap);
+    record.cause = blame_showing(record, delays);
     const bool outside =
         record.cause == Cause::stolen || record.cause == Cause::stopped || (record.cause == Cause::woken_late && limits_.fifo);
     record.own_miss = !outside;

@@ -31,8 +31,8 @@ private:
     std::size_t count_ = 0, next_ = 0;
 };
 
-/// Called by the loop in the order: begin, own_done, driver_done, close, present_begins, present_ended, before_push. The two of
-/// presenting only where pictures are presented.
+/// Called by the loop in the order: begin, own_done, driver_done, close, before_showing, present_begins, present_ended,
+/// before_push. Those of presenting only where pictures are presented.
 class FrameAccount {
 public:
     FrameAccount(const FrameLoopOptions& options, Clock& clock);
@@ -45,10 +45,12 @@ public:
     void driver_done(FrameRecord& record);
     /// Fills in usage, gap, waits; missed, own_miss and cause.
     void close(FrameRecord& record);
-    /// The time of showing has come, after close(). begins_ns: when the thread could have woken for it.
+    /// All that was to be done before the picture's time is done: what was lost since it was whole delays it too.
+    void before_showing(const FrameRecord& record);
+    /// The time of showing has come. begins_ns: when the thread could have woken for it.
     void present_begins(FrameRecord& record, std::int64_t begins_ns);
     /// Presented. A picture that was whole in time but is shown late is a miss.
-    void present_ended(FrameRecord& record, Shown shown);
+    void present_ended(FrameRecord& record, Shown shown, std::int64_t lead_ns);
     /// Last: allocations since the last frame, those of the accounting stage included.
     void before_push(FrameRecord& record);
     /// CPU time of the frame on the frame core; the control burns as much.
@@ -56,6 +58,12 @@ public:
     [[nodiscard]] const BlameLimits& limits() const { return limits_; }
 
 private:
+    /// Of a piece of wall time.
+    struct Lost {
+        std::int64_t waited_ns = 0, stolen_ns = 0, preempted_ns = 0;
+    };
+    static Lost lost(std::int64_t wall_ns, const ThreadUsage& used);
+    [[nodiscard]] std::int64_t lock_begins_late_ns(const FrameRecord& record, std::int64_t lead_ns) const;
     std::uint32_t continues() const;
     void read_end(std::int64_t& now_ns, FrameRecord& record);
     std::int64_t display_wait_ns(const FrameRecord& record, std::int64_t unexplained_ns) const;
@@ -67,6 +75,7 @@ private:
     WaitEstimate estimate_;
     std::int64_t begun_ns_ = 0;
     std::int64_t woken_late_ns_ = 0;  ///< for presenting
+    Lost lost_before_showing_;
     ThreadUsage begun_, selected_, ended_, handed_;
     ThreadUsage before_;  ///< end of the last frame; what presenting used since is added
     GuardCounters guard_before_;

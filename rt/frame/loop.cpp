@@ -74,10 +74,12 @@ void bare_frame(Clock& clock, std::int64_t burn_ns, FrameAccount& account, Frame
 void show(const FrameLoopOptions& o, const Grid& grid, Clock& clock, FrameStages& stages, FrameAccount& account,
           std::int64_t lead_ns, FrameRecord& record) {
     const std::int64_t shown_ns = record.complete_ns + lead_ns;  // if handed over now
+    account.before_showing(record);
     std::int64_t begins_ns = clock.now_ns();
     if (o.late == LatePolicy::lock) {
         record.show_ns = next_slot(grid, o.late, record.slot, shown_ns).shown_ns;
-        if (const std::int64_t planned_ns = record.show_ns - lead_ns; planned_ns > begins_ns) {
+        const std::int64_t planned_ns = record.show_ns - (record.control ? 0 : lead_ns);
+        if (planned_ns > begins_ns) {
             clock.sleep_until_ns(planned_ns);
             begins_ns = planned_ns;
         }
@@ -91,27 +93,31 @@ void show(const FrameLoopOptions& o, const Grid& grid, Clock& clock, FrameStages
         shown = stages.present(record);
     }
     const bool missed = record.missed;
-    account.present_ended(record, shown);
+    account.present_ended(record, shown, lead_ns);
     if (record.missed && !missed && !record.control) stages.shown_late(record);
 }
 
 /// The end of the frame that the next slot is reckoned from.
 std::int64_t ended_ns(const FrameLoopOptions& o, const BlameLimits& limits, const FrameRecord& r) {
     if (!o.shows) return r.complete_ns;
-    return o.late == LatePolicy::floating || is_shown_late(r, limits) ? r.presented_ns : r.show_ns;
+    if (o.late == LatePolicy::floating) return r.presented_ns;
+    if (!is_shown_late(r, limits)) return r.show_ns;
+    // A display that tells has shown it on a point of the grid, give or take its own clock; what is left is presenting's.
+    return r.shown_by == ShownBy::display ? std::max(r.show_ns, r.shown_ns - shown_tolerance_ns(limits)) : r.presented_ns;
 }
 
 /// What presenting took of the slot that begins at start_ns. A late wake-up for it is no part.
 std::int64_t taken_by_presenting_ns(const FrameRecord& r, std::int64_t start_ns) {
-    return r.presented_ns > start_ns ? std::max<std::int64_t>(0, r.presented_ns - std::max(r.handed_ns, r.show_ns)) : 0;
+    return std::max<std::int64_t>(0, r.presented_ns - std::max({r.handed_ns, r.show_ns, start_ns}));
 }
 
 /// A picture that was handed over at its time, and missed its refresh, needed more.
 void learn_lead(const FrameRecord& r, const BlameLimits& limits, std::int64_t lead_ns, PresentLead& lead) {
     if (r.control) return;
     if (r.shown_by != ShownBy::display) return lead.add(r.presented_ns - r.handed_ns);
-    constexpr std::int64_t late_wake_ns = 200'000;
-    if (r.handed_ns <= r.show_ns - lead_ns + late_wake_ns) lead.add_flip(is_shown_late(r, limits));
+    constexpr std::int64_t disturbed_ns = 200'000;
+    const bool in_time = r.handed_ns <= r.show_ns - lead_ns + disturbed_ns;
+    if (in_time && r.stolen_ns + r.preempted_ns < disturbed_ns) lead.add_flip(is_shown_late(r, limits));
 }
 
 void hand_over(const FrameLoopOptions& o, const FrameRecord& record, SpscRing<FrameRecord>& records) {
@@ -153,7 +159,8 @@ FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, Fr
         CHECK(next.slot > s.slot, "The next slot comes after this one");
         if (options.display != nullptr && record.shown_by == ShownBy::display) {
             grid = options.display->follow(grid, record.shown_ns, next.slot);
-            if (options.late == LatePolicy::lock) next.start_ns = grid.due_ns(next.slot);
+            const std::int64_t due_ns = grid.due_ns(next.slot);
+            next.start_ns = options.late == LatePolicy::lock ? due_ns : std::max(next.start_ns, due_ns);
         }
         s.slot = next.slot;
         s.skipped_before = next.skipped;

@@ -109,6 +109,9 @@ inline std::int64_t late_ns(const FrameRecord& f) {
     return f.complete_ns <= f.deadline_ns && f.show_ns > 0 ? f.presented_ns - f.show_ns : f.complete_ns - f.deadline_ns;
 }
 
+/// Time left at a frame's end; below zero: how late it was.
+inline std::int64_t slack_ns(const FrameRecord& f) { return f.missed ? -late_ns(f) : f.deadline_ns - f.complete_ns; }
+
 inline std::string_view cause_of(const FrameRecord& f) { return cause_names[static_cast<std::size_t>(f.cause)]; }
 
 /// CPU time used by the frame, ns: that of the frame thread, plus that of the rasterisers divided by their number. If a CPU clock

@@ -149,8 +149,8 @@ void Telemetry::add_times(const FrameRecord& f) {
     of(Series::raster).add(edges, f.rastered_ns - f.submitted_ns);
     of(Series::present).add(edges, f.handed_ns > 0 ? f.presented_ns - f.handed_ns : f.complete_ns - f.rastered_ns);
     of(Series::frame).add(edges, f.complete_ns - f.due_ns);
-    const std::int64_t slack_ns = f.missed ? -late_ns(f) : f.deadline_ns - f.complete_ns;
-    of(slack_ns >= 0 ? Series::slack : Series::lateness).add(edges, std::abs(slack_ns));
+    const std::int64_t left_ns = slack_ns(f);
+    of(left_ns >= 0 ? Series::slack : Series::lateness).add(edges, std::abs(left_ns));
     // A skipped slot has no picture until this one: that is how late it is. Nothing of a stall is left out.
     const std::int64_t period_ns = figures_.setup.period_ns;
     if (f.skipped_before > 0) of(Series::lateness).add_progression(edges, f.complete_ns - f.due_ns, period_ns, f.skipped_before);
@@ -184,7 +184,7 @@ void Telemetry::add_recent(const FrameRecord& f) {
     RecentFrame& r = figures_.recent[figures_.recent_count++ % Figures::max_recent];
     r.frame_us = us_of(f.complete_ns - f.due_ns);
     r.wake_us = us_of(f.woken_ns - f.due_ns);
-    r.slack_us = us_of(f.deadline_ns - f.complete_ns);
+    r.slack_us = us_of(slack_ns(f));
     r.used = static_cast<float>(busy_ns(f, figures_.setup.rasterisers) / static_cast<double>(figures_.setup.period_ns));
     r.resolution = f.resolution;
     r.accuracy = f.accuracy;

@@ -15,7 +15,7 @@ warns() { takes "$1"; wanted+=("$line"); }
 takes 'device.draws.plays(); device.begin_frame(pose); device.finish_frame()'
 takes 'device.bind(); device.begin_frame(pose); device.finish_frame(); device.release()'
 warns 'device.bind(); device.release(); device.begin_frame(pose)'
-for call in 'begin_frame(pose)' 'draw({})' 'end_slice()' 'wait_slices(1)' 'end_items()' 'finish_frame()' 'stats()' 'lost()' 'read_pixels()' \
+for call in 'begin_frame(pose)' 'draw({})' 'end_slice()' 'wait_slices(1)' 'end_items()' 'finish_frame()' 'present()' 'stats()' 'lost()' 'read_pixels()' \
     'begin_timer()' 'end_timer_ms()' 'charged_us()' 'release()' 'load({}, {})'; do
   warns "(void)device.$call"
 done

@@ -29,7 +29,7 @@ public:
     VirtualClock& clock;
     test::PacedDisplay display;
     std::vector<std::int64_t> refreshes;
-    std::uint64_t late_frame = ~0ULL;
+    std::uint64_t late_frame = ~0ULL, missed_frame = ~0ULL;
     std::int64_t works_ns = 5 * ms;
 
     void sample(FrameRecord&) override {}
@@ -38,7 +38,7 @@ public:
     void finish(FrameRecord&) override {}
     void account(FrameRecord&) override {}
     Shown present(FrameRecord& r) override {
-        refreshes.push_back(display.shows(r.handed_ns));
+        refreshes.push_back(display.shows(r.handed_ns) + (r.frame == missed_frame ? 1 : 0));
         const std::int64_t shown_ns = display.at_ns(refreshes.back());
         clock.wait(shown_ns + 60'000 - clock.now_ns());  // until the event of the refresh has been read
         return {ShownBy::display, shown_ns};
@@ -117,6 +117,19 @@ TEST(DisplayClock, ALateFrameIsShownByALaterRefreshAndTheGridStays) {
     EXPECT_EQ(at[100] - at[99], 2 * walk.per_slot) << "one slot later, on the grid";
     EXPECT_EQ(at[101] - at[100], walk.per_slot);
     EXPECT_EQ((at[199] - at[50]) % walk.per_slot, 0) << "the same phase of the display";
+}
+
+TEST(DisplayClock, APictureThatMissesItsRefreshCostsOneSlotAtAnyRate) {
+    for (const double rate_hz : {60.0, 30.0}) {
+        FlippedWalk walk(rate_hz, 50, 100);
+        walk.stages->missed_frame = 50;
+        const auto records = walk.run();
+        EXPECT_EQ(walk.result.skipped, 1U) << rate_hz;
+        for (const FrameRecord& r : records) {
+            EXPECT_EQ(r.missed, r.frame == 50) << r.frame;
+            EXPECT_EQ(r.cause, r.frame == 50 ? Cause::present : Cause::none) << cause_of(r);
+        }
+    }
 }
 
 TEST(DisplayClock, StampsThatTrembleMoveTheGridByAPartOfThat) {

@@ -182,17 +182,18 @@ public:
 };
 
 TEST(SystemCallTrap, TheLoopItselfMakesNoCallBeyondItsList) {
-    for (const bool forbidden : {false, true}) {
+    for (const auto& [forbidden, shows] : {std::pair{false, false}, {true, false}, {false, true}}) {
         TrapCounters before, after;
         bool refused = false;
-        std::thread([&] {
+        std::thread([&, calls = forbidden, presents = shows] {
             RealClock clock;
             Calling stages;
-            if (forbidden) stages.forbidden_at = 7;
+            if (calls) stages.forbidden_at = 7;
             SpscRing<FrameRecord> ring(64);
             FrameLoopOptions options;
             options.period_ns = 2 * ms;
             options.frames = 20;
+            options.shows = presents;
             options.continued = count_continues();
             const pid_t self[] = {own_tid()};
             options.rasterisers = self;

@@ -71,7 +71,7 @@ std::string summary_json(const rt::IncidentRecorder::Incident& incident, std::st
         ++frames;
         skipped += f.skipped_before;
         own += f.own_miss ? 1 : 0;
-        worst_ns = std::max(worst_ns, f.complete_ns - f.due_ns);
+        worst_ns = std::max({worst_ns, f.complete_ns - f.due_ns, f.missed ? f.presented_ns - f.due_ns : 0});
         if (!f.missed) continue;
         ++misses;
         ++causes[std::string(rt::cause_of(f))];

@@ -130,7 +130,7 @@ void add_slots(Exposition& e, const Figures& f) {
               f.skipped_slots);
     e.counter("surefoot_lost_slots_total", "Slots whose record did not reach the monitor.", f.lost_slots);
     e.counter("surefoot_slots_total", "Slots of the grid that have passed.", f.slots());
-    e.family("surefoot_misses_total", "counter", "Frames that ended after their deadline, by cause.");
+    e.family("surefoot_misses_total", "counter", "Frames that were whole after their deadline, or shown too late, by cause.");
     for (int i = 1; i < rt::cause_count; ++i)
         e.count(f.misses[static_cast<std::size_t>(i)], fmt::format("cause=\"{}\"", rt::cause_names[static_cast<std::size_t>(i)]));
     e.counter("surefoot_own_misses_total", "Misses that would be late even without the time that the host or other threads took.",
@@ -148,7 +148,8 @@ void add_times(Exposition& e, const Figures& f) {
                                        {"raster", Series::raster},
                                        {"present", Series::present}})
         e.histogram(f.of(series), f.edges, fmt::format("phase=\"{}\"", name));
-    e.family("surefoot_frame_seconds", "histogram", "From when a frame was due to its end; the deadline is one period.");
+    e.family("surefoot_frame_seconds", "histogram",
+             "From when a frame was due until its picture was whole; the deadline is one period less what presenting takes.");
     e.histogram(f.of(Series::frame), f.edges);
     e.family("surefoot_slack_seconds", "histogram", "Time left before the deadline, for frames in time.");
     e.histogram(f.of(Series::slack), f.edges);

@@ -26,10 +26,8 @@ WalkFrames walk_frames(const WalkSummary& s, std::span<const FrameRecord> record
         if (!record.control) walk.frames.push_back(&record);
     if (!walk.frames.empty()) {
         walk.start_ns = walk.frames.front()->due_ns;
-        walk.period_ns = std::max<std::int64_t>(1, walk.frames.front()->deadline_ns - walk.frames.front()->due_ns);
-    } else if (s.rate_hz > 0) {
-        walk.period_ns = static_cast<std::int64_t>(1e9 / s.rate_hz);
     }
+    if (s.rate_hz > 0) walk.period_ns = static_cast<std::int64_t>(1e9 / s.rate_hz);
     for (const ReportSnapshot& snapshot : snapshots) {
         const auto at = std::lower_bound(walk.frames.begin(), walk.frames.end(), snapshot.frame,
                                          [](const FrameRecord* f, std::uint64_t frame) { return f->frame < frame; });

@@ -17,7 +17,7 @@ inline double raster_us(const rt::FrameRecord& f) { return us_between(f.submitte
 inline double present_us(const rt::FrameRecord& f) {
     return f.handed_ns > 0 ? us_between(f.handed_ns, f.presented_ns) : us_between(f.rastered_ns, f.complete_ns);
 }
-inline double slack_us(const rt::FrameRecord& f) { return us_between(f.complete_ns, f.deadline_ns); }
+inline double slack_us(const rt::FrameRecord& f) { return us_between(0, rt::slack_ns(f)); }
 /// From when the frame was due (not from when it woke) to its end: comparable with the period.
 inline double frame_ms(const rt::FrameRecord& f) { return us_between(f.due_ns, f.complete_ns) * 1e-3; }
 

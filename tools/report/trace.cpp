@@ -124,7 +124,7 @@ Result<void> write_trace(const std::string& file, std::span<const FrameRecord> r
     for (const FrameRecord& f : records) {
         write_frame(trace, f);
         if (f.missed)
-            trace.instant(misses, "miss", rt::cause_of(f), f.deadline_ns,
+            trace.instant(misses, "miss", rt::cause_of(f), f.complete_ns > f.deadline_ns ? f.deadline_ns : f.show_ns,
                           fmt::format("\"frame\":{},\"late_us\":{:.1f},\"own\":{}", f.frame, -slack_us(f), f.own_miss));
         if (auto written = trace.flush_if(1U << 20U); !written) return written;
     }

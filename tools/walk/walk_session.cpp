@@ -228,8 +228,11 @@ model::CostModel with_overhead(model::CostModel costs, double factor) {
 
 Session::~Session() {
     if (engine) {
-        const ScopedWorkerPriority at_worker_priority(plan);
-        engine.reset();
+        {
+            const ScopedWorkerPriority at_worker_priority(plan);
+            engine->end_workers();
+        }
+        engine.reset();  // at its own priority: a large model takes longer than a real-time thread may run in one piece
     }
     if (!virtual_clock && rt::guard_active()) rt::release_memory();
 }

@@ -74,16 +74,22 @@ Correction WalkStages::correction_at(float resolution, bool filtered) const {
 
 double WalkStages::margin_us() const { return std::min(overshoot_.margin_us(), max_margin_share * limit_.us()); }
 
+/// What presenting takes of the time that frames are planned for: it has the rest of the period before that.
+double WalkStages::taken_by_lead_us() const {
+    return std::max(0.0, lead_us_ - (1 - frame_share) * static_cast<double>(options_.period_ns) * 1e-3);
+}
+
 SubmitLimits WalkStages::frame_limits() const {
     SubmitLimits limits;
-    limits.limit_us = limit_.next_us();
-    limits.deadline_us = static_cast<double>(options_.period_ns) * 1e-3;
+    limits.limit_us = limit_.next_us() - taken_by_lead_us();
+    limits.deadline_us = static_cast<double>(options_.period_ns) * 1e-3 - lead_us_;
     limits.margin_us = margin_us();
     return limits;
 }
 
 /// What a cut may take from now on, spent_us after the frame was due.
 double WalkStages::planned_us(const Correction& by, double spent_us) const {
+    spent_us += taken_by_lead_us();
     const double budget_us = std::max(0.0, options_.budget_us - spent_us);
     return request_.in_frame_check ? std::min(budget_us, limit_.plan_us(spent_us, margin_us(), by.headroom)) : budget_us;
 }
@@ -147,6 +153,7 @@ void WalkStages::publish_rehearsed(const FramePose& newest, std::int64_t due_ns)
 
 void WalkStages::sample(rt::FrameRecord& record) {
     inject(FramePhase::sample, record);
+    lead_us_ = static_cast<double>(options_.period_ns - (record.deadline_ns - record.due_ns)) * 1e-3;
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
     // With a control, the walk goes on where its last block ended: slots of the bare loop do not advance the path.
     path_slot_ = request_.control ? walked_ - rehearsed_ : record.slot;
@@ -267,7 +274,6 @@ void WalkStages::submit(rt::FrameRecord& record) {
     inject(FramePhase::submit, record);
     latch(record);
     SubmitLimits limits = frame_limits();
-    limits.deadline_us = static_cast<double>(record.deadline_ns - record.due_ns) * 1e-3;
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
     limits.frame_ns = record.due_ns;

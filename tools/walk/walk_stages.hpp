@@ -95,6 +95,7 @@ private:
     [[nodiscard]] Correction correction_at(float resolution, bool filtered) const;
     /// How much later than forecast recent frames ended, us, within bounds.
     [[nodiscard]] double margin_us() const;
+    [[nodiscard]] double taken_by_lead_us() const;
     [[nodiscard]] SubmitLimits frame_limits() const;  ///< without a clock, and as if the frame began now
     [[nodiscard]] double planned_us(const Correction& by, double spent_us) const;
     [[nodiscard]] FrameTime frame_time(const rt::FrameRecord& record) const;
@@ -119,6 +120,7 @@ private:
     PoseSample now_;
     SubmitReport report_;
     float learnt_resolution_ = 1;       ///< of the last frame that drew a selected cut; the picture at rest is another
+    double lead_us_ = 0;                ///< what presenting usually takes
     double time_left_us_ = 0;           ///< until the limit, as the last submission began
     std::uint64_t walked_ = 0;          ///< frames so far, with the rehearsed ones and without the control's bare ones
     std::uint64_t rehearsed_ = 0;       ///< of them
