@@ -13,9 +13,9 @@ namespace surefoot::rt {
 /// that was not early enough, up to a fifth of the period. A thousand in time take an eighth of it back.
 class PresentLead {
 public:
-    /// tells: the display does. Else the lead is 0 until the window is full.
-    PresentLead(std::int64_t period_ns, bool tells) : period_ns_(period_ns) {
-        if (tells) add_flip(false);
+    /// display_reports: when it shows pictures. Else the lead is 0 until the window is full.
+    PresentLead(std::int64_t period_ns, bool display_reports) : period_ns_(period_ns) {
+        if (display_reports) add_flip(false);
     }
     [[nodiscard]] std::int64_t ns() const { return lead_ns_; }
     /// Presenting took so long.
