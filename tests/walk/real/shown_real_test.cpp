@@ -57,37 +57,42 @@ TEST(ShownPictures, AreAsNearToTheGridAsABareLoopsWakeUps) {
 }
 
 TEST(ShownPictures, ADisplayThatWaitsIsTheCauseAndThePictureStaysAsFine) {
-    constexpr std::uint64_t waits = 50;
+    constexpr std::uint64_t apart = 12;
+    const auto waits_in = [](std::uint64_t frame) { return frame % apart == apart / 2; };
     const auto plain = walk::run_walk(real_request(660), {}, {});
     ASSERT_TRUE(plain.ok()) << plain.error().text();
-    std::set<std::uint64_t> waited;
     walk::WalkObserver observer;
     observer.inject = [&](walk::FramePhase phase, const rt::FrameRecord& frame) {
-        if (phase != walk::FramePhase::present || frame.frame % 12 != 6 || waited.size() == waits) return walk::Fault::none;
+        if (phase != walk::FramePhase::present || !waits_in(frame.frame)) return walk::Fault::none;
         const timespec wait{0, 10'000'000};
         (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &wait, nullptr);  // the display that is injected
-        waited.insert(frame.frame);
         return walk::Fault::none;
     };
     const auto waiting = walk::run_walk(real_request(600), {}, observer);
     ASSERT_TRUE(waiting.ok()) << waiting.error().text();
-    ASSERT_EQ(waited.size(), waits);
-    std::uint64_t named = 0;
-    for (const rt::FrameRecord& r : waiting->records)
-        named += waited.contains(r.frame) && r.missed && r.cause == rt::Cause::present ? 1 : 0;
-    EXPECT_EQ(named, waits);
-    // Slot by slot, so at the same poses.
-    std::map<std::uint64_t, const rt::FrameRecord*> at_slot;
+
+    std::map<std::uint64_t, const rt::FrameRecord*> at_slot;  // so at the same poses
     for (const rt::FrameRecord& r : plain->records) at_slot[r.slot] = &r;
-    double corrections = 0, plain_corrections = 0, triangles = 0, plain_triangles = 0;
+    std::uint64_t named = 0;
+    double triangles = 0, plain_triangles = 0, corrections = 0, plain_corrections = 0;
+    std::vector<double> of_waiting, of_others;  // actual by predicted time, without correction
     for (const rt::FrameRecord& r : waiting->records) {
+        named += waits_in(r.frame) && r.missed && r.cause == rt::Cause::present ? 1 : 0;
+        const double ratio = double{r.actual_us} / (double{r.predicted_us} / double{r.correction});
+        if (waits_in(r.frame)) of_waiting.push_back(ratio);
+        if (waits_in(r.frame + 1) || waits_in(r.frame + 2)) of_others.push_back(ratio);
         if (!at_slot.contains(r.slot)) continue;
-        corrections += double{r.correction}, plain_corrections += double{at_slot[r.slot]->correction};
         triangles += static_cast<double>(r.triangles), plain_triangles += static_cast<double>(at_slot[r.slot]->triangles);
+        corrections += double{r.correction}, plain_corrections += double{at_slot[r.slot]->correction};
     }
-    EXPECT_GT(corrections / static_cast<double>(waiting->records.size()), 0.26) << "not at the bound, where it could not change";
-    EXPECT_NEAR(corrections / plain_corrections, 1, 0.02);
+    EXPECT_EQ(named, 50U);
+    EXPECT_EQ(of_waiting.size(), 50U);
     EXPECT_NEAR(triangles / plain_triangles, 1, 0.02);
+    // The wait is no cost of its frame: it would double it. Single walks differ by 3 %, and the frame after an idle slot costs
+    // more.
+    EXPECT_NEAR(quantiles(of_waiting).p50 / quantiles(of_others).p50, 1, 0.1);
+    std::printf("corrections %.3f of those without waits\n", corrections / plain_corrections);
+    EXPECT_NEAR(corrections / plain_corrections, 1, 0.1);
 }
 
 }  // namespace
