@@ -101,17 +101,20 @@ void BlameStages::finish(rt::FrameRecord& r) {
 rt::Shown BlameStages::present(rt::FrameRecord& r) {
     clock_.burn_ns(ms / 10);
     if (now(r, rt::Cause::present)) {
-        // In turn: a driver that copies, and a display that is waited for. Either makes a miss.
+        // In turn: a driver that copies, and a display that is waited for.
         const std::int64_t extra = extra_ns(r.frame);
         if (r.frame / frames_apart % 2 == 0) {
             clock_.burn_ns(extra);
         } else {
             clock_.sleep_until_ns(clock_.now_ns() + extra);
         }
-        if (r.frame >= 2 * frames_apart) count(r.frame);
     }
     if (injected(r.frame + 1)) stolen_before_ms_ = walk::total_steal_ms();
     return {rt::ShownBy::hand_over, 0};
+}
+
+void BlameStages::shown_late(const rt::FrameRecord& r) {
+    if (counts(r)) count(r.frame);
 }
 
 void BlameStages::count(std::uint64_t frame) {
@@ -129,9 +132,8 @@ void BlameStages::account(rt::FrameRecord& r) {
         cause_ == rt::Cause::prepared_too_old && r.frame % frames_apart < frames_apart / 2 && r.frame >= frames_apart;
     if (!stalled) newest_set_ = r.frame;
     if (cause_ == rt::Cause::page_fault && injected(r.frame + 2)) pages_.renew();
-    if (cause_ == rt::Cause::woken_late && injected(r.frame + 1)) {
-        const std::int64_t due_ns = r.due_ns + period_ns;
-        blocker_.schedule(due_ns - ms, 0, due_ns + extra_ns(r.frame + 1));
+    if (now(r, rt::Cause::woken_late)) {  // the thread wakes next when the picture's time has come
+        blocker_.schedule(r.deadline_ns - ms, 0, r.deadline_ns + extra_ns(r.frame));
         blocking_ = true;
     }
 }

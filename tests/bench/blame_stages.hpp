@@ -161,6 +161,7 @@ public:
     void finish(rt::FrameRecord& record) override;
     void account(rt::FrameRecord& record) override;
     rt::Shown present(rt::FrameRecord& record) override;
+    void shown_late(const rt::FrameRecord& record) override;
     [[nodiscard]] static bool injected(std::uint64_t frame) { return frame % frames_apart == frames_apart / 2; }
     /// An injection that was carried out and made its frame miss.
     [[nodiscard]] static bool counts(const rt::FrameRecord& record) {

@@ -6,6 +6,7 @@
 
 #include "rt/frame/blame.hpp"
 #include "rt/threads/guard.hpp"
+#include "tools/walk/frame_share.hpp"
 
 namespace surefoot::walk {
 
