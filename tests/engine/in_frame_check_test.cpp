@@ -92,6 +92,7 @@ TEST_F(InFrameCheck, AStallOfTheMachineCostsItsOwnFrameAlone) {
         int coarse = 0;
         for (int i = 0; i < 60; ++i) {
             if (i == 30) {
+                engine->device().draws.plays();
                 clock.stall_at_us = engine->device().charged_us() + share * whole.predicted_us;
                 clock.stall_us = 3 * whole.predicted_us;
             }
