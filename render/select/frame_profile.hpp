@@ -34,7 +34,7 @@ private:
         double finished_us = 0, predicted_us = 0;
     };
     std::array<Usual, bins> usual_{};
-    std::array<bool, bins> stalled_{};  ///< the last frame that told had a rest of over twice its time
+    std::array<bool, bins> stalled_{};  ///< the rest took over twice its time, the last time that it was drawn in full
     std::array<Point, bins> points_{};
     std::size_t count_ = 0;
 };

@@ -127,15 +127,16 @@ void FrameAccount::present_begins(FrameRecord& record, std::int64_t begins_ns) {
     handed_ = clock_.usage();
 }
 
-/// A gap in which the thread slept is a wait. After the last fence it is for the display, or for its driver's own threads.
+/// A gap in which the thread slept is a wait, and not lost. After the last fence it is for the display, or for its driver's own
+/// threads.
 FrameAccount::Lost FrameAccount::lost(std::int64_t wall_ns, const ThreadUsage& used) {
     const std::int64_t gap = std::max<std::int64_t>(wall_ns - used.cpu_ns, 0);
-    if (used.voluntary > 0) return {gap, 0, 0};
-    return used.involuntary > 0 ? Lost{0, 0, gap} : Lost{0, gap, 0};
+    if (used.voluntary > 0) return {};
+    return used.involuntary > 0 ? Lost{0, gap} : Lost{gap, 0};
 }
 
-/// How much later than planned nothing but this program let the picture wait: it kept the thread busy.
-std::int64_t FrameAccount::lock_begins_late_ns(const FrameRecord& record, std::int64_t lead_ns) const {
+/// By how much this thread was still busy when the picture was to be handed over. `float` plans no such time.
+std::int64_t FrameAccount::kept_waiting_ns(const FrameRecord& record, std::int64_t lead_ns) const {
     if (options_.late == LatePolicy::floating) return 0;
     return std::max<std::int64_t>(record.handed_ns - woken_late_ns_ - (record.show_ns - lead_ns), 0);
 }
@@ -162,7 +163,7 @@ void FrameAccount::present_ended(FrameRecord& record, Shown shown, std::int64_t 
     const bool by_others =
         shown.by == ShownBy::display && record.handed_ns > record.show_ns - lead_ns + shown_tolerance_ns(limits_);
     const std::int64_t own_ns =
-        lock_begins_late_ns(record, lead_ns) - lost_before_showing_.stolen_ns - lost_before_showing_.preempted_ns;
+        kept_waiting_ns(record, lead_ns) - lost_before_showing_.stolen_ns - lost_before_showing_.preempted_ns;
     delays.beyond_lead_ns = std::max<std::int64_t>(own_ns, 0);
     if (!by_others) delays.beyond_lead_ns += presenting_ns - lead_ns - here.stolen_ns - here.preempted_ns;
     record.stolen_ns += delays.stolen_ns;

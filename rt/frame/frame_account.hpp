@@ -60,10 +60,10 @@ public:
 private:
     /// Of a piece of wall time.
     struct Lost {
-        std::int64_t waited_ns = 0, stolen_ns = 0, preempted_ns = 0;
+        std::int64_t stolen_ns = 0, preempted_ns = 0;
     };
     static Lost lost(std::int64_t wall_ns, const ThreadUsage& used);
-    [[nodiscard]] std::int64_t lock_begins_late_ns(const FrameRecord& record, std::int64_t lead_ns) const;
+    [[nodiscard]] std::int64_t kept_waiting_ns(const FrameRecord& record, std::int64_t lead_ns) const;
     std::uint32_t continues() const;
     void read_end(std::int64_t& now_ns, FrameRecord& record);
     std::int64_t display_wait_ns(const FrameRecord& record, std::int64_t unexplained_ns) const;

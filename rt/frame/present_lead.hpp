@@ -1,4 +1,4 @@
-// How much before its time a picture is handed over, so that it is shown at it.
+// How long before its time a picture is handed to the display, so that it is shown in time.
 #pragma once
 
 #include <algorithm>
