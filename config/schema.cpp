@@ -52,10 +52,10 @@ constexpr Entry text(string_view key, string_view help, std::string S::*member) 
 /// The screen of the kms back end.
 std::vector<Entry> screen_entries() {
     Entry rotation = integer("rotation", "degrees", rotations.front(), rotations.back(),
-                             "How the screen of the kms backend is turned; a card may refuse 90 and 270.", &S::rotation_deg);
+                             "How that screen is turned; a card may refuse 90 and 270.", &S::rotation_deg);
     rotation.only = rotations;
     return {
-        text("screen", "Screen of the kms backend, by its connector: \"HDMI-A-1\"; \"\": the first that is connected.",
+        text("screen", "Screen without a window system, by its connector: \"HDMI-A-1\"; \"\": the first that is connected.",
              &S::screen),
         text("mode", "Mode of that screen: \"1920x1080@60\"; \"\": the one that the screen prefers.", &S::mode),
         rotation,
@@ -178,7 +178,10 @@ Schema::Schema(Registry selectors, Registry backends, std::span<const Renamed> r
       renamed_(renamed),
       entries_(make_entries(selectors_, backends_)) {
     for (Entry& entry : entries_)
-        if (entry.key == "selector") entry.absent = selectors_.absent;
+        if (entry.key == "selector")
+            entry.absent = selectors_.absent;
+        else if (entry.key == "backend")
+            entry.absent = backends_.absent;
     const std::vector<Entry> walker = walker_entries();
     entries_.insert(entries_.begin() + 5, walker.begin(), walker.end());  // after "steering"
     const std::vector<Entry> screen = screen_entries();

@@ -1,5 +1,5 @@
-// A screen as the frame thread drives it: shows a picture at the next refresh, and comes back from all that can take the screen
-// away. It knows no kernel: a ScreenPort does.
+// A screen as the frame thread drives it: shows each picture at the next refresh, and gets a screen back that was taken away. It
+// knows no kernel: a ScreenPort does.
 #pragma once
 
 #include <atomic>

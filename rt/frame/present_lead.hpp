@@ -8,10 +8,10 @@
 
 namespace surefoot::rt {
 
-/// What presenting takes, the median of the last 15 times and at most a quarter of the period: a display that waits now and then
-/// does not change it. Where the display tells when it shows pictures, that is the time until it had them. A margin comes on top
-/// then: a millisecond, and half as much again after each picture that was not early enough, up to a fifth of the period. A
-/// thousand in time take an eighth of it back.
+/// What presenting takes: the median of the last 15 times, at most a quarter of the period. So a display that waits now and then
+/// does not change it. Where the display tells when it shows pictures, that is the time until it had them, and a margin comes on
+/// top. The margin is a millisecond, and half as much again after each picture that was not early enough. It is at most a fifth
+/// of the period. A thousand pictures in time take an eighth of it back.
 class PresentLead {
 public:
     /// display_reports: when it shows pictures. Until the window is full, the lead is the margin alone, or 0.

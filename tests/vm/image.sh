@@ -149,7 +149,7 @@ made_from() {
     declare -f unpack "make_$1"
     case $1 in
       kernel) declare -f make_modules make_vkms ;;
-      root) echo "${guest_packages[*]}" ;;
+      root) declare -f make_modules make_vkms; echo "${guest_packages[*]}" ;;  # the modules are in it
       trixie) echo "${trixie_packages[*]}" ;;
       initrd) echo "${initrd_modules[*]}" ;;
     esac

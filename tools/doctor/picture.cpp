@@ -31,11 +31,11 @@ Finding cost_table(const Machine& m) {
     return fail(fmt::format("{} was measured on \"{}\", this is \"{}\"", table->file, table->machine, drawn->machine), calibrate);
 }
 
-/// Of the kms back end. A window's screen is its server's.
+/// Without a window system. A window's screen is its server's.
 Finding screen(const Machine& m) {
     const auto& found = m.probed().screens;
     if (!found) return unknown("not checked", "run surefoot doctor on the machine itself");
-    if (found->screens.empty()) return unknown(found->error, found->remedy + "; nothing to do where backend is not kms");
+    if (found->screens.empty()) return unknown(found->error, found->remedy + "; nothing to do where an X server has the screen");
     std::string good, bad, dark;
     for (const ScreenFound& one : found->screens) {
         if (!one.connected) continue;
@@ -47,7 +47,7 @@ Finding screen(const Machine& m) {
                     "use the screen of another card");
     if (!good.empty()) return pass(good + " counts refreshes: frames can be held to them");
     if (!dark.empty()) return unknown(dark + " shows nothing now", "run it again while something is shown");
-    return unknown("no screen is connected", "connect one, or use another backend than kms");
+    return unknown("no screen is connected", "connect one; nothing to do where none is wanted");
 }
 
 constexpr std::array all_picture_checks = {
