@@ -39,9 +39,27 @@ constexpr Entry choice(string_view key, std::span<const Named> of, string_view h
 }
 
 constexpr double longest_name = 4095;  // bytes, PATH_MAX
+constexpr std::array<double, 4> rotations{0, 90, 180, 270};
 
 constexpr Entry file_name(string_view key, string_view help, std::string S::*member) {
     return {key, Kind::file, {}, 0, longest_name, {}, help, member};
+}
+
+constexpr Entry text(string_view key, string_view help, std::string S::*member) {
+    return {key, Kind::text, {}, 0, 100, {}, help, member};
+}
+
+/// The screen of the kms back end.
+std::vector<Entry> screen_entries() {
+    Entry rotation = integer("rotation", "degrees", rotations.front(), rotations.back(),
+                             "How that screen is turned; a card may refuse 90 and 270.", &S::rotation_deg);
+    rotation.only = rotations;
+    return {
+        text("screen", "Screen without a window system, by its connector: \"HDMI-A-1\"; \"\": the first that is connected.",
+             &S::screen),
+        text("mode", "Mode of that screen: \"1920x1080@60\"; \"\": the one that the screen prefers.", &S::mode),
+        rotation,
+    };
 }
 
 /// How a steered visitor moves.
@@ -166,6 +184,9 @@ Schema::Schema(Registry selectors, Registry backends, std::span<const Renamed> r
             entry.absent = backends_.absent;
     const std::vector<Entry> walker = walker_entries();
     entries_.insert(entries_.begin() + 5, walker.begin(), walker.end());  // after "steering"
+    const std::vector<Entry> screen = screen_entries();
+    const auto backend = std::ranges::find(entries_, "backend", &Entry::key);
+    entries_.insert(backend + 1, screen.begin(), screen.end());
     defaults_.selector = selectors_.usual;
     defaults_.backend = backends_.usual;
 }

@@ -42,6 +42,8 @@ struct Settings {
     rt::TextureFilter filter = rt::TextureFilter::automatic;
     double cost_scale = 1;          ///< factor on predicted costs (real clock) or on charged ones (virtual clock)
     std::string selector, backend;  ///< names out of registries
+    std::string screen, mode;       ///< of the kms back end: a connector, and "1920x1080@60"; empty: chosen
+    int rotation_deg = 0;           ///< of that screen
     rt::LatePolicy late = rt::LatePolicy::lock;
     rt::ClockKind clock = rt::ClockKind::real;
     int workers = 0;      ///< 0: one a core beside the frame thread's
@@ -57,14 +59,14 @@ struct Settings {
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
 };
 
-enum class Kind : std::uint8_t { number, integer, flag, choice, colour, file };
+enum class Kind : std::uint8_t { number, integer, flag, choice, colour, file, text };
 
 using Member = std::variant<double Settings::*, std::uint32_t Settings::*, int Settings::*, bool Settings::*,
                             std::string Settings::*, rt::LatePolicy Settings::*, rt::ClockKind Settings::*,
                             rt::TextureFilter Settings::*, rt::WalkingMode Settings::*>;
 
 /// One row of the schema. min and max hold for number and integer, choices for choice (of an enum: in its order); max for
-/// file: bytes.
+/// file and text: bytes.
 struct Entry {
     std::string_view key;
     Kind kind = Kind::number;

@@ -34,7 +34,7 @@ std::string toml_string(std::string_view text) {
     return out + "\"";
 }
 
-bool is_file_name(std::string_view text, double max_length) {
+bool is_plain_text(std::string_view text, double max_length) {
     return static_cast<double>(text.size()) <= max_length && std::none_of(text.begin(), text.end(), is_control);
 }
 
@@ -61,6 +61,8 @@ std::string limits_of(const Entry& entry) {
             return "a colour as \"#rrggbb\"";
         case Kind::file:
             return fmt::format("a file name of at most {} bytes without control characters", number_text(entry.max));
+        case Kind::text:
+            return fmt::format("a text of at most {} bytes without control characters", number_text(entry.max));
     }
     return {};
 }
@@ -135,8 +137,8 @@ std::optional<Error> assign(Settings& settings, const Entry& entry, const Value&
         put_choice(settings, entry, *chosen);
         return std::nullopt;
     }
-    const bool fits =
-        (entry.kind == Kind::colour && is_colour(text)) || (entry.kind == Kind::file && is_file_name(text, entry.max));
+    const bool free = entry.kind == Kind::file || entry.kind == Kind::text;
+    const bool fits = (entry.kind == Kind::colour && is_colour(text)) || (free && is_plain_text(text, entry.max));
     if (!fits) return refusal();
     settings.*std::get<std::string Settings::*>(entry.member) = text;
     return std::nullopt;

@@ -108,7 +108,11 @@ refuse "nosuch.*forest, room, town" scene nosuch -o x.glb
 for value in 0 -1 1e9 nan; do refuse "--scale.*$value.* 0.01 to 200" scene forest --scale $value -o x.glb; done
 refuse '--rate.*nan' bake f.glb --rate nan -o x.walk
 refuse '--backend foo.*egl' walk f.walk --clock virtual --backend foo
-for command in "walk f.walk" "accuracy f.walk" calibrate; do refuse 'kms.*not in this version.*egl' $command --backend kms; done
+for command in "walk f.walk" "accuracy f.walk" calibrate; do refuse "--backend vulkan.*kms" $command --backend vulkan; done
+refuse "mode '1920'.*WIDTHxHEIGHT@HZ" walk f.walk --backend kms --mode 1920
+refuse '--rotation 45.*0, 90, 180, 270' walk f.walk --backend kms --rotation 45
+# A machine without a card, or without this connector. The kernel is asked, and its answer is a sentence.
+expect 1 '(/dev/dri|NOSUCH-9).*(egl|Choose|group)' walk f.walk --backend kms --screen NOSUCH-9
 refuse '--profile fast.*--config' walk f.walk $virtual --profile fast
 refuse '--every.*--snap' walk f.walk $virtual --every 5
 refuse '--control-pairs.*--control' walk f.walk --control-pairs 3
@@ -124,7 +128,7 @@ for option in --no-check --no-occlusion --no-correction --cost-scale; do grep -q
 expect 0 '' walk f.walk $virtual --frames 5 --slice 500 --hysteresis 1 --cost-noise 0.1
 grep -qE '^ +two-stage +[a-z].{10}' help || complain "walk --help does not say what two-stage is"
 "$surefoot" config --print --defaults > page; grep -qE '^#   two-stage +[a-z].{10}' page || complain "the settings page does not say what two-stage is"
-printf 'backend = "kms"\n' > kms.toml; refuse 'kms.toml:1.*not in this version.*egl' walk f.walk --config kms.toml
+printf 'backend = "vulkan"\n' > kms.toml; refuse 'kms.toml:1.*vulkan.*kms' walk f.walk --config kms.toml
 
 # Outputs: asked for beforehand, never over an input; one that fails spoils no other.
 expect 1 'over.obj: .*\.obj.*only read.*\.glb' scene forest --scale 0.3 -o over.obj

@@ -4,7 +4,7 @@
 build_packages=(
   g++ cmake ninja-build ccache pkg-config libglm-dev libtbb-dev libfmt-dev libpng-dev libjpeg-dev libmeshoptimizer-dev
   nlohmann-json3-dev libzstd-dev zlib1g-dev libtomlplusplus-dev libtinygltf-dev libcli11-dev libgtest-dev libegl1 libegl-dev libgl-dev
-  libgl1-mesa-dri libhidapi-dev libudev-dev git
+  libgl1-mesa-dri libdrm-dev libgbm-dev libhidapi-dev libudev-dev git
 )
 # Opened at run time, or used by single tests only: their absence is told, and is no failure.
 optional_packages=(libosmesa6 libgpiod-dev)

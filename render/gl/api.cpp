@@ -65,4 +65,11 @@ Result<Library> Library::open(const char* name, const char* package) {
 
 void* Library::find(const char* symbol) const { return dlsym(handle_, symbol); }
 
+bool is_software(std::string_view renderer) {
+    for (const std::string_view name : {"llvmpipe", "softpipe", "swrast", "Software"}) {
+        if (renderer.find(name) != std::string_view::npos) return true;
+    }
+    return false;
+}
+
 }  // namespace surefoot::gl

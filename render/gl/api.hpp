@@ -115,6 +115,9 @@ GLenum take_errors(const Api& gl);
 /// `find`: the context's GetProcAddress. glvnd returns a pointer for any name, so version and extensions decide.
 Result<Api> load_api(const std::function<void*(const char*)>& find, const std::string& place);
 
+/// Whether a renderer of this name (GL_RENDERER) draws by the processor.
+bool is_software(std::string_view renderer);
+
 /// Never closed: threads and exit handlers of drivers run in its code.
 class Library {
 public:

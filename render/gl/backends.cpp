@@ -20,18 +20,16 @@ constexpr std::array all_backends = {
             [](Options) { return open_egl_device(); }},
     Backend{"window", "a window on the X server at $DISPLAY", BackendKind::window,
             [](Options options) { return open_window(options.viewport, options.window_title); }},
+    Backend{"kms", "a screen without a window system, by the kernel's modesetting", BackendKind::kms,
+            [](Options options) { return open_kms(options.screen); }},
     Backend{"osmesa", "Mesa software rendering in memory, without a driver", BackendKind::osmesa,
             [](Options) { return open_osmesa(); }},
     Backend{"null", "draws nothing and charges the predicted cost", BackendKind::null, nullptr},
 };
 
-constexpr std::array absent = {Named{"kms", "is planned, and not in this version"}};
-
 }  // namespace
 
 std::span<const Backend> backends() { return all_backends; }
-
-std::span<const Named> absent_backends() { return absent; }
 
 const Backend& backend_of(BackendKind kind) {
     const auto found = std::ranges::find(all_backends, kind, &Backend::kind);
@@ -41,10 +39,8 @@ const Backend& backend_of(BackendKind kind) {
 
 Result<const Backend*> backend_named(std::string_view name) {
     if (const Backend* backend = find_named(all_backends, name)) return backend;
-    const Named* known = find_named(absent, name);
-    return Error{"backend '" + std::string(name) + "'",
-                 known != nullptr ? "The backend " + std::string(known->help) : "There is no such backend",
-                 "Use one of: " + names_in_words(all_backends), known != nullptr ? ErrorKind::unsupported : ErrorKind::misuse};
+    return Error{"backend '" + std::string(name) + "'", "There is no such backend", "Use one of: " + names_in_words(all_backends),
+                 ErrorKind::misuse};
 }
 
 std::string drawing_backends() {

@@ -26,12 +26,10 @@ struct Backend {
 constexpr std::string_view usual_backend = "egl";
 
 std::span<const Backend> backends();
-/// Known names without a backend in this version, and why.
-std::span<const Named> absent_backends();
 const Backend& backend_of(BackendKind kind);
 /// An unknown name is an Error that lists the known ones.
 Result<const Backend*> backend_named(std::string_view name);
-/// "egl, device, window, osmesa": those that draw pictures.
+/// "egl, device, window, kms, osmesa": those that draw pictures.
 std::string drawing_backends();
 
 }  // namespace surefoot::gl

@@ -3,9 +3,11 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "render/gl/api.hpp"
 #include "render/gl/device.hpp"
+#include "render/gl/fit_picture.hpp"
 
 namespace surefoot::gl {
 
@@ -17,17 +19,30 @@ public:
     virtual void release() = 0;
     [[nodiscard]] virtual void* find(const char* function) const = 0;
     [[nodiscard]] virtual std::string name() const = 0;  ///< for error messages
-    /// True where the default framebuffer is a window: the frame is blitted there, then present() swaps.
-    [[nodiscard]] virtual bool has_window() const { return false; }
-    virtual void present() {}
     /// Whether the driver reports resets, through glGetGraphicsResetStatus.
     [[nodiscard]] virtual bool reports_resets() const { return false; }
+
+    /// True where the default framebuffer is a window: the frame is blitted there, then present() swaps.
+    [[nodiscard]] virtual bool has_window() const { return false; }
+    /// Of the default framebuffer, or of pixel_rows().
+    [[nodiscard]] virtual Window window() const { return {}; }
+    /// Memory that the picture is copied to before present(), where there is no window.
+    [[nodiscard]] virtual PixelRows pixel_rows() { return {}; }
+    /// What was drawn must be done before present(): the screen does not wait for it.
+    [[nodiscard]] virtual bool presents_at_once() const { return false; }
+    /// Hands the picture over, and waits until it is shown where the display tells.
+    virtual rt::Shown present() { return {rt::ShownBy::hand_over, 0, 0}; }
+    /// Device::refreshes(), watch_screen() and the screen's part of lost().
+    [[nodiscard]] virtual rt::Refreshes refreshes() const { return {0, 0}; }
+    virtual std::vector<std::string> watch_screen() { return {}; }
+    [[nodiscard]] virtual bool lost() const { return false; }
 };
 
 Result<std::unique_ptr<Context>> open_egl_surfaceless();
 Result<std::unique_ptr<Context>> open_egl_device();
 Result<std::unique_ptr<Context>> open_osmesa();
 Result<std::unique_ptr<Context>> open_window(model::Viewport viewport, const std::string& title);
+Result<std::unique_ptr<Context>> open_kms(const ScreenOptions& options);
 
 /// Opens the backend of options.kind (not null).
 Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options);

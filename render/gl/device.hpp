@@ -17,11 +17,12 @@
 #include "render/model/view.hpp"
 #include "rt/base/modes.hpp"
 #include "rt/base/result.hpp"
+#include "rt/base/shown.hpp"
 #include "rt/base/thread_annotations.hpp"
 
 namespace surefoot::gl {
 
-enum class BackendKind { egl, device, window, osmesa, null };  ///< backends.hpp has them by name
+enum class BackendKind { egl, device, window, kms, osmesa, null };  ///< backends.hpp has them by name
 
 /// An item to be drawn: one representation of a node.
 struct DrawItem {
@@ -54,6 +55,17 @@ enum class RestSupport : std::uint8_t { none, picture, samples };
 /// Parts of items that are drawn together. Blended ones come last.
 enum class Parts : std::uint8_t { all, opaque, blended };
 
+/// The screen of the kms back end.
+struct ScreenOptions {
+    std::string name;      ///< of the connector, "HDMI-A-1"; empty: the first that is connected
+    std::string mode;      ///< "1920x1080@60"; empty: the one that the screen prefers
+    int rotation_deg = 0;  ///< 0, 90, 180 or 270
+    /// Called twice a second while the screen cannot be had. held: another program has it. True: wait on. Empty: never wait.
+    std::function<bool(const Error& why, bool held)> on_wait{};
+    /// Software renderers draw into buffers of GBM too. For tests: they crash where the card goes away.
+    bool software_by_gbm = false;
+};
+
 /// Settings of a device.
 struct DeviceOptions {
     BackendKind kind = BackendKind::egl;
@@ -61,6 +73,7 @@ struct DeviceOptions {
     int rasterisers = 0;                  ///< threads of software GL, as given to prepare_process(); 0: the measured default
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
+    ScreenOptions screen;
     std::array<float, 3> sky = model::usual_sky;
     NullOptions null;           ///< of the null backend
     bool rest = false;          ///< has targets for a picture at rest
@@ -112,6 +125,11 @@ public:
     /// Whether set_filter() has an effect: see DeviceOptions::second_filter.
     [[nodiscard]] virtual bool switches_filter() const { return false; }
 
+    /// The display's refreshes, where it counts and stamps them; elsewhere the period is 0.
+    [[nodiscard]] virtual rt::Refreshes refreshes() const { return {0, 0}; }
+    /// What became of the screen since the last call, a line each. A few times a second, on a thread that does not draw.
+    virtual std::vector<std::string> watch_screen() { return {}; }
+
     // ---- the frame; no own allocation, no throw ----
     /// The filter of the pictures that begin from now on. A change takes a call or two of the driver for each texture array.
     virtual void set_filter(rt::TextureFilter filter) REQUIRES(draws) { static_cast<void>(filter); }
@@ -146,8 +164,9 @@ public:
     /// Ends a frame at rest: waits for all slices. The shown picture is whole.
     virtual void finish_rest_frame() REQUIRES(draws) {}
 
-    /// Hands the shown picture to the window, if there is one. The driver may wait for the display. Nothing on a lost device.
-    virtual void present() REQUIRES(draws) {}
+    /// Hands the shown picture to the window or screen, if there is one. The driver may wait for the display, and waits until the
+    /// picture is shown where the display tells. Nothing on a lost device.
+    virtual rt::Shown present() REQUIRES(draws) { return {rt::ShownBy::hand_over, 0, 0}; }
 
     [[nodiscard]] virtual FrameStats stats() const REQUIRES(draws) = 0;
     /// The context is lost: the GPU was reset or removed, or does not finish. Later frames were not shown. All calls are safe

@@ -15,13 +15,6 @@ constexpr std::uint32_t max_slices = 1024;  // fences kept a frame; beyond it th
 constexpr GLuint64 wait_ns = 1'000'000'000;
 constexpr int max_waits = 10;
 
-bool is_software(std::string_view renderer) {
-    for (const std::string_view name : {"llvmpipe", "softpipe", "swrast", "Software"}) {
-        if (renderer.find(name) != std::string_view::npos) return true;
-    }
-    return false;
-}
-
 /// False: the fence cannot be waited for, or the GPU has not reached it within the bound.
 bool reached(const Api& gl, GLsync fence) {
     for (int i = 0; i < max_waits; ++i) {
@@ -67,6 +60,7 @@ Result<void> GlDevice::set_up() {
     gl_.GenQueries(1, &timer_);
     if (context_->reports_resets() && gl_.version >= 45)
         reset_status_ = reinterpret_cast<PFNGLGETGRAPHICSRESETSTATUSPROC>(context_->find("glGetGraphicsResetStatus"));
+    prepare_presenting();
     return check_errors(gl_, context_->name(), "See `surefoot doctor`");
 }
 
@@ -251,18 +245,6 @@ void GlDevice::resolve_rest() {
 
 void GlDevice::look_for_reset() {
     if (reset_status_ != nullptr && reset_status_() != GL_NO_ERROR) lost_ = true;
-}
-
-/// The shown target goes to the window, if there is one.
-void GlDevice::present() {
-    if (lost_ || !context_->has_window()) return;
-    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_.steps.front().framebuffer);
-    const auto w = static_cast<GLint>(options_.viewport.width);
-    const auto h = static_cast<GLint>(options_.viewport.height);
-    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    gl_.BlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    context_->present();
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_.steps.front().framebuffer);
 }
 
 RestSupport GlDevice::rest_support() const {

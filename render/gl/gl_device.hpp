@@ -50,7 +50,9 @@ public:
     void add_sample(bool first) override REQUIRES(draws);
     void show_rest(std::uint32_t samples) override REQUIRES(draws);
     void finish_rest_frame() override REQUIRES(draws);
-    void present() override REQUIRES(draws);
+    rt::Shown present() override REQUIRES(draws);
+    [[nodiscard]] rt::Refreshes refreshes() const override { return context_->refreshes(); }
+    std::vector<std::string> watch_screen() override { return context_->watch_screen(); }
     [[nodiscard]] FrameStats stats() const override REQUIRES(draws) { return stats_; }
     [[nodiscard]] bool lost() const override REQUIRES(draws) { return lost_; }
     Result<PixelImage> read_pixels() override REQUIRES(draws);
@@ -88,6 +90,9 @@ private:
     void clear_target() REQUIRES(draws);
     void draw_parts(std::span<const DrawItem> items, Parts parts) REQUIRES(draws);
     void look_for_reset() REQUIRES(draws);
+    void prepare_presenting() REQUIRES(draws);
+    void fill_window() REQUIRES(draws);
+    void fill_pixel_rows(const PixelRows& rows) REQUIRES(draws);
     [[nodiscard]] State state_of(const Pending& pending) const;
     void submit(std::span<Pending> sorted) REQUIRES(draws);
     void submit_blended() REQUIRES(draws);
@@ -109,6 +114,8 @@ private:
     std::size_t step_ GUARDED_BY(draws) = 0;        ///< of this frame, in model::resolution_steps
     std::vector<PixelEnlarger> enlargers_ GUARDED_BY(draws);  ///< of the steps below the first; none: a pass enlarges
     std::vector<std::uint32_t> small_pixels_ GUARDED_BY(draws), shown_pixels_ GUARDED_BY(draws);
+    RowCopier copier_ GUARDED_BY(draws);
+    std::vector<std::uint32_t> copied_pixels_ GUARDED_BY(draws);  ///< on the way to memory that a screen is read from
     FrameBuffers frame_ GUARDED_BY(draws);
     Resources resources_;
     draw::DrawTables tables_;

@@ -119,9 +119,10 @@ public:
         return {};
     }
     [[nodiscard]] bool has_window() const override { return true; }
-    void present() override {
+    rt::Shown present() override {
         egl_.SwapBuffers(display_, surface_);
         window_->drop_events();
+        return {rt::ShownBy::hand_over, 0, 0};
     }
 
 private:

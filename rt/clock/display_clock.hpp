@@ -4,15 +4,10 @@
 #include <cstdint>
 
 #include "rt/base/result.hpp"
+#include "rt/base/shown.hpp"
 #include "rt/clock/grid.hpp"
 
 namespace surefoot::rt {
-
-/// A display's refreshes: their period by its mode, and one of them by its clock.
-struct Refreshes {
-    std::int64_t period_ns = 16'666'667;  ///< > 0
-    std::int64_t one_ns = 0;              ///< when one was; CLOCK_MONOTONIC
-};
 
 /// How many refreshes a slot takes at this rate. The rate must divide the display's; an Error names the rates that do.
 Result<std::uint32_t> refreshes_per_slot(const Refreshes& display, double rate_hz);

@@ -71,8 +71,8 @@ void bare_frame(Clock& clock, std::int64_t burn_ns, FrameAccount& account, Frame
 }
 
 /// The picture waits for its time, and is shown. Bare frames wait as long, and are judged alike.
-void show(const FrameLoopOptions& o, const Grid& grid, Clock& clock, FrameStages& stages, FrameAccount& account,
-          std::int64_t lead_ns, FrameRecord& record) {
+Shown show(const FrameLoopOptions& o, const Grid& grid, Clock& clock, FrameStages& stages, FrameAccount& account,
+           std::int64_t lead_ns, FrameRecord& record) {
     const std::int64_t shown_ns = record.complete_ns + lead_ns;  // if handed over now
     account.before_showing(record);
     std::int64_t begins_ns = clock.now_ns();
@@ -95,6 +95,7 @@ void show(const FrameLoopOptions& o, const Grid& grid, Clock& clock, FrameStages
     const bool missed = record.missed;
     account.present_ended(record, shown, lead_ns);
     if (record.missed && !missed && !record.control) stages.shown_late(record);
+    return shown;
 }
 
 /// The end of the frame that the next slot is reckoned from.
@@ -112,9 +113,10 @@ std::int64_t taken_by_presenting_ns(const FrameRecord& r, std::int64_t start_ns)
 }
 
 /// A picture that was handed over at its time, and missed its refresh, needed more.
-void learn_lead(const FrameRecord& r, const BlameLimits& limits, std::int64_t lead_ns, PresentLead& lead) {
+void learn_lead(const FrameRecord& r, const Shown& shown, const BlameLimits& limits, std::int64_t lead_ns, PresentLead& lead) {
     if (r.control) return;
     if (r.shown_by != ShownBy::display) return lead.add(r.presented_ns - r.handed_ns);
+    if (shown.queued_ns != 0) lead.add(shown.queued_ns - r.handed_ns);
     constexpr std::int64_t disturbed_ns = 200'000;
     const bool in_time = r.handed_ns <= r.show_ns - lead_ns + disturbed_ns;
     if (in_time && r.stolen_ns + r.preempted_ns < disturbed_ns) lead.add_flip(is_shown_late(r, limits));
@@ -149,8 +151,8 @@ FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, Fr
             burn.add(account.core_cpu_ns());
         }
         if (options.shows) {
-            show(options, grid, clock, stages, account, s.lead_ns, record);
-            learn_lead(record, account.limits(), s.lead_ns, lead);
+            const Shown shown = show(options, grid, clock, stages, account, s.lead_ns, record);
+            learn_lead(record, shown, account.limits(), s.lead_ns, lead);
         }
         account.before_push(record);
         hand_over(options, record, records);

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "rt/base/modes.hpp"
+#include "rt/base/shown.hpp"
 
 namespace surefoot::rt {
 
@@ -32,12 +33,6 @@ constexpr std::array<std::string_view, cause_count> cause_names = {
 
 /// FrameRecord::binding_node where no drawn node has an error.
 constexpr std::uint32_t no_node = 0xFFFFFFFF;
-
-/// What became of a picture that was presented. time_ns: when the display showed it, where it tells (`display`).
-struct Shown {
-    ShownBy by = ShownBy::nothing;
-    std::int64_t time_ns = 0;
-};
 
 /// Times in integer nanoseconds of CLOCK_MONOTONIC (or of the virtual clock).
 struct FrameRecord {

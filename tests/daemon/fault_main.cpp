@@ -15,11 +15,11 @@ int main(int argc, char** argv) {
     const std::string file = fault == all ? "" : all.substr(fault.size() + 1);
     return surefoot::daemon::run_main(argc, argv, [fault, file](FramePhase phase, const surefoot::rt::FrameRecord& record) {
         const bool now = file.empty() ? record.frame == 40 : ::access(file.c_str(), F_OK) == 0;
-        if (phase != FramePhase::submit || !now) return Fault::none;
+        if (phase != (fault == "hang-present" ? FramePhase::present : FramePhase::submit) || !now) return Fault::none;
         if (fault == "runaway") {
             for (std::atomic<unsigned> forever{0};;) ++forever;
         }
-        if (fault == "hang") {
+        if (fault.starts_with("hang")) {
             while (true) ::pause();
         }
         return fault == "context-lost" ? Fault::context_lost : Fault::none;

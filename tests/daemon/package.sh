@@ -29,7 +29,7 @@ for file in usr/bin/surefoot usr/sbin/surefootd usr/lib/systemd/system/surefootd
     usr/lib/sysusers.d/surefoot.conf usr/lib/tmpfiles.d/surefoot.conf usr/lib/udev/rules.d/70-surefoot.rules \
     etc/surefoot/surefoot.toml usr/share/surefoot/room.walk usr/share/man/man8/surefootd.8 usr/share/man/man1/surefoot.1 usr/share/man/man1/surefoot-walk.1 \
     usr/share/man/man5/surefoot.toml.5 usr/share/doc/surefoot/copyright \
-    usr/share/doc/surefoot/examples/surefootd-kiosk.conf; do
+    usr/share/doc/surefoot/examples/surefootd-kiosk.conf usr/share/doc/surefoot/examples/surefootd-screen.conf; do
   grep -qE " \./$file\$" "$work/content" || complain "the package lacks $file"
 done
 awk '{ print $2 }' "$work/content" | grep -qv '^root/root$' && complain "something is not root's"

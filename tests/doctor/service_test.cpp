@@ -20,6 +20,10 @@ std::function<void(Probed&)> costs_of(const std::string& drawn_on, const std::st
     };
 }
 
+std::function<void(Probed&)> screen_of(bool counts) {
+    return [=](Probed& p) { p.screens.emplace().screens = {{"DP-1", "1920x1080@60", true, counts}}; };
+}
+
 std::function<void(Probed&)> woken(int priority, double p99_us, double max_us, double steal_ms) {
     return [=](Probed& p) {
         WakeFigures f;
@@ -63,6 +67,8 @@ std::vector<Case> service_cases() {
          [](Probed& p) {
              p.renderer = RendererFound{"", "egl is absent", "apt install libegl1", "", false};
          }},
+        {"picture.screen", true, "DP-1 (1920x1080@60) counts refreshes", {}, screen_of(true)},
+        {"picture.screen", false, "DP-1 (1920x1080@60) counts no refreshes", {}, screen_of(false)},
         {"picture.cost_table", true, "on this machine", {}, costs_of("a", "a")},
         {"picture.cost_table", false, "on \"b\", this is \"a\"", {}, costs_of("a", "b")},
         {"picture.cost_table", false, "no cost table", {}, costs_of("a", "", false)},

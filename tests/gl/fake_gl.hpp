@@ -142,7 +142,10 @@ public:
     }
     [[nodiscard]] std::string name() const override { return "fake"; }
     [[nodiscard]] bool has_window() const override { return true; }
-    void present() override { ++FakeGl::get().presents; }
+    rt::Shown present() override {
+        ++FakeGl::get().presents;
+        return {rt::ShownBy::hand_over, 0, 0};
+    }
 
 private:
     std::map<std::string, void*> functions_;

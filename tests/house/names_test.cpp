@@ -33,7 +33,6 @@ std::vector<Known> known_names() {
     };
     add(select::selectors(), "render/select");
     add(gl::backends(), "render/gl");
-    add(gl::absent_backends(), "render/gl");
     add(effects::all_effects(), "render/effects");
     add(model::forms, "render/model");
     for (const importer::Format& format : importer::formats())

@@ -31,6 +31,8 @@ public:
     std::vector<std::int64_t> refreshes;
     std::uint64_t late_frame = ~0ULL, missed_frame = ~0ULL;
     std::int64_t works_ns = 5 * ms;
+    std::int64_t queues_ns = 0;  ///< presenting takes so long until the display has the picture
+    bool reports_queued = true;
 
     void sample(FrameRecord&) override {}
     void select(FrameRecord&) override { clock.advance(ms / 2); }
@@ -38,10 +40,12 @@ public:
     void finish(FrameRecord&) override {}
     void account(FrameRecord&) override {}
     Shown present(FrameRecord& r) override {
-        refreshes.push_back(display.shows(r.handed_ns) + (r.frame == missed_frame ? 1 : 0));
+        clock.advance(queues_ns);
+        const std::int64_t queued_ns = r.handed_ns + queues_ns;
+        refreshes.push_back(display.shows(queued_ns) + (r.frame == missed_frame ? 1 : 0));
         const std::int64_t shown_ns = display.at_ns(refreshes.back());
         clock.wait(shown_ns + 60'000 - clock.now_ns());  // until the event of the refresh has been read
-        return {ShownBy::display, shown_ns};
+        return {ShownBy::display, shown_ns, reports_queued ? queued_ns : 0};
     }
 };
 
@@ -117,6 +121,18 @@ TEST(DisplayClock, ALateFrameIsShownByALaterRefreshAndTheGridStays) {
     EXPECT_EQ(at[100] - at[99], 2 * walk.per_slot) << "one slot later, on the grid";
     EXPECT_EQ(at[101] - at[100], walk.per_slot);
     EXPECT_EQ((at[199] - at[50]) % walk.per_slot, 0) << "the same phase of the display";
+}
+
+TEST(DisplayClock, APictureIsHandedOverEarlyByWhatItTakesUntilTheDisplayHasIt) {
+    const auto misses_after_a_second = [](bool reports) {
+        FlippedWalk walk(60, 50, 600);
+        walk.stages->queues_ns = 3 * ms;  // and 0.4 before the refresh: more than the margin may grow to
+        walk.stages->reports_queued = reports;
+        const auto records = walk.run();
+        return std::count_if(records.begin(), records.end(), [](const FrameRecord& r) { return r.frame >= 60 && r.missed; });
+    };
+    EXPECT_EQ(misses_after_a_second(true), 0);
+    EXPECT_GT(misses_after_a_second(false), 500) << "so the line above can fail";
 }
 
 TEST(DisplayClock, APictureThatMissesItsRefreshCostsOneSlotAtAnyRate) {

@@ -1,5 +1,5 @@
 # Read by tests/vm/run and tests/vm/service: what this machine must be, the guest's machine, and what comes back. Not run by itself.
-# They set json, keep, build_dir, image_only and, in $share/in, what goes in. Whatever the guest writes to $share/kept comes back;
+# They set json, keep, build_dir, image_only and, in $share/in, what goes in; guest_devices for other devices. Whatever the guest writes to $share/kept comes back;
 # $share/checks.jsonl holds an object a check, and $share/ended is there when it has ended by itself.
 # shellcheck shell=bash
 
@@ -66,6 +66,9 @@ kvm_works() {
   grep -q 'Linux version' "$log" 2>/dev/null
 }
 
+# What the guest has beside disks and a serial line.
+guest_devices=(-display none)
+
 # boot LIMIT_S KERNEL_PARAMETERS: until the guest goes off, its log shown as it comes. Without virtualisation the same kernel is
 # emulated, slower.
 boot() {
@@ -76,7 +79,7 @@ boot() {
   echo "$accelerated" >"$share/in/accelerated"
   built_s=$((SECONDS - start - image_s))
   print_title "Booting $(cat "$cache/kernel/release") ($accelerated)"
-  timeout -k 10 "$limit_s" qemu-system-x86_64 -machine q35 "${accelerator[@]}" -smp 2 -m 2048 -display none -no-reboot -nic none \
+  timeout -k 10 "$limit_s" qemu-system-x86_64 -machine q35 "${accelerator[@]}" -smp 2 -m 2048 "${guest_devices[@]}" -no-reboot -nic none \
     -kernel "$cache/kernel/boot/vmlinuz-$(cat "$cache/kernel/release")" -initrd "$cache/initrd.gz" \
     -append "console=ttyS0 quiet panic=-1 loglevel=3 $parameters" \
     -drive "file=$cache/root.img,if=virtio,format=raw,snapshot=on" -drive "file=$cache/trixie.img,if=virtio,format=raw,snapshot=on" \

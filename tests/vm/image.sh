@@ -1,6 +1,6 @@
 # Read by tests/vm/guest.sh: makes what the guests boot from, once, in the cache. Not run by itself.
 #
-#   kernel/     Debian 12's real-time kernel and its modules, unpacked, never installed, with gpio-sim built beside them
+#   kernel/     Debian 12's real-time kernel and its modules, unpacked, never installed, with gpio-sim and vkms built beside them
 #   root.img    Debian 12 with systemd, udev and the libraries that the package needs
 #   trixie/     Debian 13 with a compiler and libgpiod 2: its programs are built here, in a chroot
 #   trixie.img  the same as a disk
@@ -39,13 +39,13 @@ kernel_release() { apt-cache depends linux-image-rt-amd64 2>/dev/null | sed -n '
 
 # gpio-sim is not in Debian's kernel. Its source is; IRQ_SIM, which it needs, is compiled in with one edit: irq_to_desc() is not
 # exported to modules, irq_get_irq_data() is.
-make_gpio_sim() {
+make_modules() {
   local release=$1 to=$2 work common source headers
   work=$(mktemp -d "$cache/gpio-sim.XXXXXX")
   common="linux-headers-${release/-rt-amd64/-common-rt}"
   unpack "$work/headers" "linux-headers-$release" "$common" linux-kbuild-6.1 || return 1
   unpack "$work/source" linux-source-6.1 || return 1
-  tar -C "$work" -xf "$work"/source/usr/src/linux-source-6.1.tar.xz linux-source-6.1/drivers/gpio linux-source-6.1/kernel/irq || return 1
+  tar -C "$work" -xf "$work"/source/usr/src/linux-source-6.1.tar.xz linux-source-6.1/drivers/gpio linux-source-6.1/kernel/irq linux-source-6.1/drivers/gpu/drm/vkms || return 1
   source="$work/linux-source-6.1"
   headers="$work/headers/usr/src/linux-headers-$release"
   # The headers name their common half, and the tools, by where they would be installed.
@@ -55,15 +55,26 @@ make_gpio_sim() {
   sed -i 's/irq_to_desc(irqnum)/irq_data_to_desc(irq_get_irq_data(irqnum))/' "$work/module/irq_sim.c"
   printf 'obj-m += gpio-simx.o\ngpio-simx-y := gpio-sim.o irq_sim.o\n' >"$work/module/Kbuild"
   make -C "$headers" M="$work/module" modules >"$work/make.log" 2>&1 || { tail -20 "$work/make.log" >&2; return 1; }
-  install -D -m 644 "$work/module/gpio-simx.ko" "$to" || return 1
+  install -D -m 644 "$work/module/gpio-simx.ko" "$to/gpio-simx.ko" || return 1
+  make_vkms "$release" "$to/vkms.ko" "$work" || echo "vkms was not built: what needs it is skipped" >&2
   rm -rf "$work"
+}
+
+# vkms, a card that counts refreshes and shows nothing, is not in Debian's kernel either. Its source builds as it is.
+make_vkms() {
+  local release=$1 to=$2 work=$3
+  mkdir "$work/vkms"
+  cp "$work"/linux-source-6.1/drivers/gpu/drm/vkms/* "$work/vkms"
+  sed -i 's/obj-\$(CONFIG_DRM_VKMS)/obj-m/' "$work/vkms/Makefile"
+  make -C "$work/headers/usr/src/linux-headers-$release" M="$work/vkms" modules >"$work/make.log" 2>&1 || { tail -20 "$work/make.log" >&2; return 1; }
+  install -D -m 644 "$work/vkms/vkms.ko" "$to"
 }
 
 make_kernel() {
   local release=$1 to
   to=$(part kernel)
   unpack "$to" "linux-image-$release" || return 1
-  make_gpio_sim "$release" "$to/lib/modules/$release/extra/gpio-simx.ko" || return 1
+  make_modules "$release" "$to/lib/modules/$release/extra" || return 1
   depmod -b "$to" "$release" || return 1
   echo "$release" >"$to/release"
   moved kernel
@@ -137,8 +148,8 @@ made_from() {
     echo "$2"
     declare -f unpack "make_$1"
     case $1 in
-      kernel) declare -f make_gpio_sim ;;
-      root) echo "${guest_packages[*]}" ;;
+      kernel) declare -f make_modules make_vkms ;;
+      root) declare -f make_modules make_vkms; echo "${guest_packages[*]}" ;;  # the modules are in it
       trixie) echo "${trixie_packages[*]}" ;;
       initrd) echo "${initrd_modules[*]}" ;;
     esac

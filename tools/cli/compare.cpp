@@ -45,8 +45,8 @@ accuracy::FindShares find_shares(const CompareArguments& a) {
 }
 
 /// Settings of the comparison itself: the same for all walks, set by their own options.
-constexpr std::array of_all = {"rasterisers", "width",   "height",  "rate_hz", "backend",
-                               "clock",       "shift_x", "shift_y", "lift_m",  "control"};
+constexpr std::array of_all = {"rasterisers", "width",  "height",  "rate_hz", "backend", "clock",   "shift_x",
+                               "shift_y",     "lift_m", "control", "screen",  "mode",    "rotation"};
 
 /// With --resource triangles, these are the same for all walks too.
 constexpr std::array of_triangles = {"budget_ms", "resolution",    "filter",   "hysteresis",

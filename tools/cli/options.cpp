@@ -56,8 +56,7 @@ CLI::Validator drawing_backend() {
     return {[](std::string& text) {
                 const auto backend = gl::backend_named(text);
                 if (backend && (*backend)->draws()) return std::string();
-                const std::string_view why =
-                    backend.ok() ? "draws nothing" : config::absent_because(*walk::settings_schema().find("backend"), text);
+                const std::string_view why = backend.ok() ? "draws nothing" : "";
                 return refused_value(text, why, "one of " + gl::drawing_backends()).text();
             },
             ""};

@@ -33,6 +33,20 @@ struct RendererFound {
     bool software = false;
 };
 
+/// A screen that can be driven without a window system.
+struct ScreenFound {
+    std::string name;  ///< of its connector
+    std::string mode;  ///< that it prefers
+    bool connected = false;
+    std::optional<bool> counts_refreshes;  ///< absent: it shows nothing now
+};
+
+/// The screens of this machine, or why none was found.
+struct ScreensFound {
+    std::vector<ScreenFound> screens;
+    std::string error, remedy;
+};
+
 /// The cost table of this machine, if there is one.
 struct CostTableFound {
     std::string file;
@@ -48,6 +62,7 @@ struct Probed {
     std::optional<bool> locks_memory;  ///< 1 GiB of address space may be locked
     std::optional<bool> holds_c_states;  ///< /dev/cpu_dma_latency may be opened for writing
     std::optional<RendererFound> renderer;
+    std::optional<ScreensFound> screens;
     std::optional<CostTableFound> costs;
     std::optional<std::uint64_t> free_state_bytes;  ///< of the disk that holds the state folder
     std::optional<WakeFigures> wake_up, cyclictest;

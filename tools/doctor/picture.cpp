@@ -31,8 +31,28 @@ Finding cost_table(const Machine& m) {
     return fail(fmt::format("{} was measured on \"{}\", this is \"{}\"", table->file, table->machine, drawn->machine), calibrate);
 }
 
+/// Without a window system. A window's screen is its server's.
+Finding screen(const Machine& m) {
+    const auto& found = m.probed().screens;
+    if (!found) return unknown("not checked", "run surefoot doctor on the machine itself");
+    if (found->screens.empty()) return unknown(found->error, found->remedy + "; nothing to do where an X server has the screen");
+    std::string good, bad, dark;
+    for (const ScreenFound& one : found->screens) {
+        if (!one.connected) continue;
+        std::string& list = !one.counts_refreshes ? dark : *one.counts_refreshes ? good : bad;
+        list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", one.name, one.mode);
+    }
+    if (!bad.empty())
+        return fail(bad + " counts no refreshes: pictures are shown by this machine's clock, and may be torn",
+                    "use the screen of another card");
+    if (!good.empty()) return pass(good + " counts refreshes: frames can be held to them");
+    if (!dark.empty()) return unknown(dark + " shows nothing now", "run it again while something is shown");
+    return unknown("no screen is connected", "connect one; nothing to do where none is wanted");
+}
+
 constexpr std::array all_picture_checks = {
     Check{"picture.renderer", "OpenGL works", renderer},
+    Check{"picture.screen", "frames can be held to a screen", screen},
     Check{"picture.cost_table", "the cost table is of this machine", cost_table},
 };
 

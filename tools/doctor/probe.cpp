@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "render/gl/device.hpp"
+#include "render/gl/kms_modes.hpp"
 #include "render/measure/calibrate.hpp"
 #include "rt/threads/capability.hpp"
 #include "tools/walk/state.hpp"
@@ -54,6 +55,21 @@ RendererFound try_renderer() {
     return found;
 }
 
+ScreensFound find_screens() {
+    ScreensFound found;
+    const auto screens = gl::find_screens();
+    if (!screens) {
+        found.error = screens.error().place + ": " + screens.error().what;
+        found.remedy = screens.error().remedy;
+        return found;
+    }
+    for (const gl::Screen& screen : *screens) {
+        const auto mode = gl::choose_mode(screen, {});
+        found.screens.push_back({screen.name, mode ? gl::in_words(*mode) : "", screen.connected, screen.counts_refreshes});
+    }
+    return found;
+}
+
 CostTableFound look_for_costs(const std::string& state_folder) {
     CostTableFound found;
     found.file = walk::cost_table_file(state_folder);
@@ -90,6 +106,7 @@ Probed probe_machine(const Wanted& wanted) {
     rt::restore_limits(limits);
     probed.holds_c_states = opens_for_writing("/dev/cpu_dma_latency");
     probed.renderer = try_renderer();
+    probed.screens = find_screens();
     probed.costs = look_for_costs(wanted.state_folder);
     probed.free_state_bytes = free_bytes(wanted.state_folder);
     return probed;

@@ -57,7 +57,7 @@ WalkRequest::WalkRequest() : config::Settings(settings_schema().defaults()) {}
 
 const config::Schema& settings_schema() {
     static const config::Schema schema({named(select::selectors()), select::usual_selector, named(select::refused_selectors())},
-                                       {named(gl::backends()), gl::usual_backend, named(gl::absent_backends())});
+                                       {named(gl::backends()), gl::usual_backend});
     return schema;
 }
 

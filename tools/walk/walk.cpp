@@ -34,6 +34,7 @@ WalkStagesOptions stages_options(Session& s) {
     o.capture_missed = s.request.capture_file.empty() && s.observer.on_missed_frame;
     if (s.observer.inject) o.inject = &s.observer.inject;
     o.display = s.observer.display;
+    o.follows_display = s.display.has_value();
     o.lost = &s.lost;
     return o;
 }
@@ -102,6 +103,16 @@ void notify_missed_frame(Session& s) {
     s.kept.kept.store(false, std::memory_order_release);
 }
 
+/// What became of the screen.
+void notify_screen(Session& s, const Progress& progress) {
+    for (std::string& line : s.engine->device().watch_screen()) {
+        if (progress.notify)
+            progress.notify(line);
+        else
+            s.notes.push_back(std::move(line));
+    }
+}
+
 /// While the frame thread walks: serves the input, reports progress, and counts the threads once all have started.
 void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, const Progress& progress) {
     bool counted = s.virtual_clock;
@@ -109,6 +120,7 @@ void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, cons
     while (!done.load()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
         if (s.input) s.input->poll(progress, s.notes);
+        notify_screen(s, progress);
         notify_input(s);
         notify_missed_frame(s);
         const double ran =
@@ -175,6 +187,7 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     if (!s.virtual_clock) notify_started(s);
     supervise(s, clock, done, progress);
     frame_thread.join();
+    notify_screen(s, progress);
     notify_missed_frame(s);
     s.facts.pinned = !misplaced && !s.virtual_clock;
     if (misplaced) {

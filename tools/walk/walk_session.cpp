@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "render/gl/backends.hpp"
+#include "render/gl/kms_modes.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
 #include "render/select/registry.hpp"
@@ -31,6 +32,7 @@ Result<void> read_request(Session& s) {
         if (!refreshes) return refreshes.error();
         s.display.emplace(s.observer.display->refreshes, *refreshes);
     }
+    if (auto mode = gl::read_mode(s.request.mode); !mode) return mode.error();
     return check_request(s.request);
 }
 
@@ -68,6 +70,28 @@ Result<void> claim(Session& s) {
     return require_real_time(lacks);
 }
 
+/// Waits for a screen that another program has; without an end for any screen, as a kiosk's may be off when it starts.
+bool wait_for_screen(const Error& why, bool held, bool endless, const Progress& progress, std::string& notified) {
+    if (progress.stopped() || (!held && !(endless && why.kind == ErrorKind::no_device))) return false;
+    std::string text = why.place + ": " + why.what + ". The walk waits for it.";
+    if (text != notified && progress.notify) progress.notify(text);
+    notified = std::move(text);
+    return true;
+}
+
+/// The grid follows a display that tells when it shows, where the rate divides its refresh.
+void follow_display(Session& s) {
+    const rt::Refreshes refreshes = s.engine->device().refreshes();
+    if (s.virtual_clock || s.observer.display != nullptr || refreshes.period_ns == 0) return;
+    auto per_slot = rt::refreshes_per_slot(refreshes, s.request.rate_hz);
+    if (per_slot) {
+        s.display.emplace(refreshes, *per_slot);
+        return;
+    }
+    s.notes.push_back(
+        fmt::format("screen: {}. Pictures are shown up to a refresh late. {}.", per_slot.error().what, per_slot.error().remedy));
+}
+
 /// `others`: cores beside the frame thread's.
 Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     const auto backend = gl::backend_named(r.backend);
@@ -79,6 +103,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.device.samples = r.samples;
     options.device.filter = r.filter == rt::TextureFilter::adaptive ? rt::TextureFilter::automatic : r.filter;
     options.device.second_filter = r.filter == rt::TextureFilter::adaptive;
+    options.device.screen = {r.screen, r.mode, r.rotation_deg, {}};
     options.device.sky = config::colour_of(r.sky);
     options.device.null.cost_scale = r.cost_scale;
     options.device.null.noise = r.cost_noise;
@@ -162,9 +187,13 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     options->prepare.worker_hooks = s.worker_places.emplace(s.plan).hooks();
     notify_step(s, WalkStep::device);
     progress.update("open", 0.5);
+    options->device.screen.on_wait = [&, notified = std::string()](const Error& why, bool held) mutable {
+        return wait_for_screen(why, held, r.endless, progress, notified);
+    };
     auto engine = Engine::open(std::move(*model), s.costs, *options);
     if (!engine) return engine.error();
     s.engine = std::move(*engine);
+    follow_display(s);
     if (const auto refused = s.worker_places->refused())
         s.facts.degraded.push_back({rt::LackKind::placing, "a worker: " + refused->what, refused->remedy});
     s.facts.worker_problems = s.worker_places->problems();

@@ -54,6 +54,7 @@ struct WalkStagesOptions {
     bool capture_missed = false;              ///< also keep missed frames, one at a time
     const FaultHook* inject = nullptr;        ///< injects faults, for tests; null: none
     const TestDisplay* display = nullptr;     ///< takes the pictures, for tests; null: the device does
+    bool follows_display = false;             ///< the grid is held to the device's display
     const std::atomic<bool>* stop = nullptr;  ///< ends the rehearsal; may be null
     RegionClip* clip = nullptr;               ///< where frames are prepared inline; null where nobody walks
     std::atomic<bool>* lost = nullptr;        ///< set when the graphics device is lost; may be null
