@@ -20,6 +20,8 @@ public:
     /// True where the default framebuffer is a window: the frame is blitted there, then present() swaps.
     [[nodiscard]] virtual bool has_window() const { return false; }
     virtual void present() {}
+    /// The window and its events; null without one.
+    [[nodiscard]] virtual std::shared_ptr<WindowEvents> window() const { return nullptr; }
     /// Whether the driver reports resets, through glGetGraphicsResetStatus.
     [[nodiscard]] virtual bool reports_resets() const { return false; }
 };
@@ -27,7 +29,7 @@ public:
 Result<std::unique_ptr<Context>> open_egl_surfaceless();
 Result<std::unique_ptr<Context>> open_egl_device();
 Result<std::unique_ptr<Context>> open_osmesa();
-Result<std::unique_ptr<Context>> open_window(model::Viewport viewport, const std::string& title);
+Result<std::unique_ptr<Context>> open_window(const DeviceOptions& options);
 
 /// Opens the backend of options.kind (not null).
 Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options);

@@ -21,6 +21,8 @@
 
 namespace surefoot::gl {
 
+class WindowEvents;
+
 enum class BackendKind { egl, device, window, osmesa, null };  ///< backends.hpp has them by name
 
 /// An item to be drawn: one representation of a node.
@@ -61,6 +63,7 @@ struct DeviceOptions {
     int rasterisers = 0;                  ///< threads of software GL, as given to prepare_process(); 0: the measured default
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
+    bool fullscreen = false;  ///< the window fills the screen at first
     std::array<float, 3> sky = model::usual_sky;
     NullOptions null;           ///< of the null backend
     bool rest = false;          ///< has targets for a picture at rest
@@ -95,6 +98,8 @@ public:
     virtual ~Device() = default;
     [[nodiscard]] virtual std::string renderer() const = 0;  ///< GL_RENDERER, or "null"
     [[nodiscard]] virtual bool software() const = 0;
+    /// The window that shows the pictures, with what its visitor does; null without one. It may outlive the device.
+    [[nodiscard]] virtual std::shared_ptr<WindowEvents> window() const { return nullptr; }
     /// Samples of a pixel that frames are drawn with. Others than requested where the driver has no such number.
     [[nodiscard]] virtual std::uint32_t samples() const { return 1; }
     /// The filter that textures are read by, unless set_filter() asks for the other; never `automatic`.
@@ -146,7 +151,8 @@ public:
     /// Ends a frame at rest: waits for all slices. The shown picture is whole.
     virtual void finish_rest_frame() REQUIRES(draws) {}
 
-    /// Hands the shown picture to the window, if there is one. The driver may wait for the display. Nothing on a lost device.
+    /// Hands the shown picture to the window, if there is one: as large as fits, in its own shape, with black beside it. The
+    /// driver may wait for the display. Nothing on a lost device.
     virtual void present() REQUIRES(draws) {}
 
     [[nodiscard]] virtual FrameStats stats() const REQUIRES(draws) = 0;

@@ -6,6 +6,9 @@
 #include <string_view>
 #include <utility>
 
+#include "render/gl/window_events.hpp"
+#include "render/gl/window_fit.hpp"
+
 namespace surefoot::gl {
 
 namespace {
@@ -34,7 +37,7 @@ bool reached(const Api& gl, GLsync fence) {
 }  // namespace
 
 GlDevice::GlDevice(std::unique_ptr<Context> context, const DeviceOptions& options)
-    : context_(std::move(context)), options_(options) {}
+    : context_(std::move(context)), window_(context_->window()), options_(options) {}
 
 GlDevice::~GlDevice() = default;  // the context takes every object with it
 
@@ -260,7 +263,15 @@ void GlDevice::present() {
     const auto w = static_cast<GLint>(options_.viewport.width);
     const auto h = static_cast<GLint>(options_.viewport.height);
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    gl_.BlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    const WindowSize size = window_ != nullptr ? window_->size() : WindowSize{options_.viewport.width, options_.viewport.height};
+    const FittedPicture fit = fit_picture(options_.viewport.width, options_.viewport.height, size.width, size.height);
+    if (fit.x > 0 || fit.y > 0) {
+        gl_.ClearColor(0, 0, 0, 1);
+        gl_.Clear(GL_COLOR_BUFFER_BIT);
+    }
+    const bool same = fit.width == w && fit.height == h;
+    gl_.BlitFramebuffer(0, 0, w, h, fit.x, fit.y, fit.x + fit.width, fit.y + fit.height, GL_COLOR_BUFFER_BIT,
+                        same ? GL_NEAREST : GL_LINEAR);
     context_->present();
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_.steps.front().framebuffer);
 }

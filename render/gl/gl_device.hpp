@@ -27,6 +27,7 @@ public:
 
     [[nodiscard]] std::string renderer() const override { return renderer_; }
     [[nodiscard]] bool software() const override { return software_; }
+    [[nodiscard]] std::shared_ptr<WindowEvents> window() const override { return context_->window(); }
     [[nodiscard]] std::uint32_t samples() const override { return samples_.samples; }
     [[nodiscard]] rt::TextureFilter filter() const override;
     [[nodiscard]] bool switches_filter() const override;
@@ -98,6 +99,7 @@ private:
     void append_command(const Pending& pending, std::uint32_t at, std::uint32_t first_of_batch) REQUIRES(draws);
 
     std::unique_ptr<Context> context_;
+    std::shared_ptr<const WindowEvents> window_;  ///< the context's; null without one
     DeviceOptions options_;
     Api gl_;
     std::string renderer_;

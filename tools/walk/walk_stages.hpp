@@ -55,6 +55,7 @@ struct WalkStagesOptions {
     const FaultHook* inject = nullptr;        ///< injects faults, for tests; null: none
     const TestDisplay* display = nullptr;     ///< takes the pictures, for tests; null: the device does
     const std::atomic<bool>* stop = nullptr;  ///< ends the rehearsal; may be null
+    const std::atomic<bool>* left = nullptr;  ///< the same
     RegionClip* clip = nullptr;               ///< where frames are prepared inline; null where nobody walks
     std::atomic<bool>* lost = nullptr;        ///< set when the graphics device is lost; may be null
 };
