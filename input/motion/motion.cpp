@@ -171,7 +171,7 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     const bool points = request.turn_by_rad != 0 || request.look_by_rad != 0;
     if (points) {
         state.pointed_ns = state.last_ns;
-        state.pointer.owed += dvec2(request.turn_by_rad, request.look_by_rad);
+        state.pointer.add(dvec2(request.turn_by_rad, request.look_by_rad));
     }
     if (command.order == Order::stop) {
         if (ground.halt != nullptr) ground.halt(ground.context);

@@ -8,7 +8,7 @@
 
 namespace surefoot::input {
 
-/// Follows the displacements of a pointer. x: yaw, y: pitch.
+/// Follows the displacements of a pointer, unless they are faster than the largest rate for long. x: yaw, y: pitch.
 struct PointerTurn {
     dvec2 owed{0.0};   ///< not turned yet, rad
     dvec2 rates{0.0};  ///< rad/s
@@ -16,6 +16,12 @@ struct PointerTurn {
     static constexpr double follow_s = 0.03;         ///< time constant of small turns
     static constexpr double rest_within_rad = 2e-4;  ///< less is turned at once: a low pass alone would creep for ever
 
+    static constexpr double max_owed_rad = 3;  ///< a hand faster than the largest rate is not followed for ever
+
+    void add(const dvec2& displacement) {
+        owed += displacement;
+        if (const double length = glm::length(owed); length > max_owed_rad) owed *= max_owed_rad / length;
+    }
     [[nodiscard]] bool moves() const { return owed != dvec2(0.0) || rates != dvec2(0.0); }
     void rest() { owed = rates = dvec2(0.0); }
 

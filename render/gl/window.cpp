@@ -23,6 +23,7 @@ public:
 
     [[nodiscard]] x11::Id visual() const { return x_.VisualIDFromVisual(x_.DefaultVisual(display_, x_.DefaultScreen(display_))); }
     [[nodiscard]] x11::Display* display() const { return display_; }
+    void flush() { x_.Flush(display_); }
 
 private:
     x11::Functions x_;
@@ -57,7 +58,10 @@ public:
     }
     [[nodiscard]] bool has_window() const override { return true; }
     [[nodiscard]] std::shared_ptr<WindowEvents> window() const override { return window_; }
-    void present() override { egl_.SwapBuffers(display_, surface_); }
+    void present() override {
+        egl_.SwapBuffers(display_, surface_);
+        connection_->flush();  // a software driver leaves its picture in Xlib's buffer
+    }
 
 private:
     bool matching_config(EGLConfig& config) const {

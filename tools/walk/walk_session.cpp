@@ -39,7 +39,7 @@ bool window_of(const WalkRequest& r) {
 
 /// Read first of all: a wrong steering file is found before a large model is opened.
 Result<void> open_input(Session& s) {
-    if (s.request.input_file.empty()) return {};
+    if (s.request.input_file.empty() && !window_steers(s.request)) return {};
     notify_step(s, WalkStep::input);
     auto input = InputSession::open(s.request, s.grid.period_ns, s.notes);
     if (!input) return input.error();

@@ -111,17 +111,22 @@ TEST(WindowWalk, KeysAndMouseLeadOffThePathAndEscapeEndsTheWalk) {
     request.rest_after_ms = 0;
     Times times;
     Pictures pictures;
-    std::thread hand;
+    std::atomic<std::int64_t> first_ns{0};
+    std::thread hand([&] {  // there before the walk, which counts the threads that are its own
+        first_ns.wait(0);
+        rt::RealClock clock;
+        clock.sleep_until_ns(first_ns.load());
+        if (first_ns.load() > 1) steer(**visitor, times, pictures);
+    });
     walk::WalkObserver observer;
     observer.on_started = [&](const walk::WalkStart& start) {
-        hand = std::thread([&, first_ns = start.t0_ns] {
-            rt::RealClock clock;
-            clock.sleep_until_ns(first_ns);
-            steer(**visitor, times, pictures);
-        });
+        first_ns.store(start.t0_ns);
+        first_ns.notify_one();
     };
     const auto outcome = walk::run_walk(request, {}, observer);
-    if (hand.joinable()) hand.join();
+    if (first_ns.load() == 0) first_ns.store(1);  // it never began
+    first_ns.notify_one();
+    hand.join();
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
     ASSERT_FALSE(outcome->records.empty());
     EXPECT_TRUE(outcome->left);
