@@ -120,7 +120,8 @@ TEST(WindowSteering, ThePointerTurnsExactlyAsFarAsItMoved) {
         WindowRig rig;
         rig.run(5);
         for (int i = 0; i < 10; ++i) {
-            rig.push({}, pixels, -pixels / 10);
+            rig.push({}, pixels - 1, -pixels / 10);
+            rig.push({}, 1);  // two of them in one step
             rig.run(8);
         }
         rig.run(1500);
@@ -196,18 +197,23 @@ deg_per_count = 1
     rig.run(200);
     EXPECT_LT(rig.sample.velocity_m_s.z, -1);
     EXPECT_NEAR(rig.yaw_deg(), 5, 1e-6) << "this file does not invert";
+    rig.push({'w'}, 40);
+    rig.run(5);
     rig.push({'w', ' '}, 50);
     rig.run(1);
+    const double stopped_at = rig.yaw_deg();
+    EXPECT_LT(stopped_at, 40) << "the turn has not ended";
     EXPECT_TRUE(rig.sample.stopped);
     EXPECT_EQ(rig.sample.velocity_m_s, dvec3(0.0));
     rig.push({'w'}, 50);
     rig.run(200);
     EXPECT_TRUE(rig.sample.stopped) << "it latches";
-    EXPECT_NEAR(rig.yaw_deg(), 5, 1e-6);
+    EXPECT_EQ(rig.yaw_deg(), stopped_at);
     rig.push({'w', 'r'});
     rig.run(200);
     EXPECT_FALSE(rig.sample.stopped);
     EXPECT_EQ(rig.sample.velocity_m_s, dvec3(0.0)) << "nobody walks off by a key still held";
+    EXPECT_EQ(rig.yaw_deg(), stopped_at) << "what was left of the turn is gone";
     rig.push({});
     rig.run(5);
     rig.push({'w'});
