@@ -59,6 +59,7 @@ public:
     [[nodiscard]] bool has_window() const override { return true; }
     [[nodiscard]] std::shared_ptr<WindowEvents> window() const override { return window_; }
     void present() override {
+        if (PresentTimes* const times = window_->present_times()) times->handed();
         egl_.SwapBuffers(display_, surface_);
         connection_->flush();  // a software driver leaves its picture in Xlib's buffer
     }

@@ -48,6 +48,7 @@ Result<std::shared_ptr<WindowEvents>> WindowEvents::open(model::Viewport viewpor
     x->SetErrorHandler(pass_over_error);
     window->fullscreen_ = fullscreen;
     window->show(viewport, title);
+    window->times_ = PresentTimes::open(window->window_);
     return window;
 }
 

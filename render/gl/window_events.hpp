@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "render/gl/present_times.hpp"
 #include "render/gl/x11.hpp"
 #include "render/model/view.hpp"
 #include "rt/base/result.hpp"
@@ -41,6 +42,9 @@ public:
     void centre_pointer();
     void toggle_fullscreen();
 
+    /// When its pictures were shown; null where the server does not report it.
+    [[nodiscard]] PresentTimes* present_times() const { return times_.get(); }
+
     /// Any thread: as of the last event.
     [[nodiscard]] WindowSize size() const;
     [[nodiscard]] x11::Id id() const { return window_; }
@@ -61,6 +65,7 @@ private:
     bool fullscreen_ = false;
     int before_x_ = 0, before_y_ = 0, x_px_ = 0, y_px_ = 0;  ///< places: before fullscreen without a window manager; now
     WindowSize before_;
+    std::unique_ptr<PresentTimes> times_;
     std::atomic<std::uint64_t> size_{0};  ///< width in the upper half
 };
 

@@ -248,10 +248,12 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     s.facts.dropped_records = ring.dropped();
     outcome.records = recorder.take_records();
     record_loss(s, outcome);
+    if (s.window) s.window->stop();
     outcome.left = s.window && s.window->left().load();
     outcome.stopped = progress.stopped() && !outcome.left && (request.endless || s.prolonged.load() || seen < s.frames);
     if (s.input) outcome.summary.input = s.input->summary(outcome.records);
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
+    if (s.window) outcome.summary.display = s.window->displayed();
     if (request.control && !outcome.stopped && !outcome.left && !s.lost)
         judge_control(s.plan, s.grid.period_ns, s.burn_ns, blocks, outcome, progress);
     if (seen == 0 && (outcome.stopped || outcome.left)) {  // nothing to show: what an earlier walk left stays

@@ -8,11 +8,14 @@
 #include <array>
 #include <cstdint>
 
+#include "rt/base/statistics.hpp"
+
 namespace surefoot::walk {
 
 namespace {
 
 constexpr int idle_ms = 100, retry_ms = 2;
+constexpr std::size_t max_shown = 1U << 16U;  // a quarter of an hour at 60 Hz
 
 }  // namespace
 
@@ -20,8 +23,9 @@ WindowThread::WindowThread(std::shared_ptr<gl::WindowEvents> window, WindowThrea
     : window_(std::move(window)),
       options_(std::move(options)),
       placement_(std::move(placement)),
-      wake_fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
-      thread_([this] { run(); }) {
+      wake_fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+    if (window_->present_times() != nullptr) shown_ms_.reserve(max_shown);
+    thread_ = std::thread([this] { run(); });
     placed_.wait();
 }
 
@@ -44,11 +48,37 @@ void WindowThread::run() {
     input::WindowReports reports(static_cast<std::int32_t>(size.width), static_cast<std::int32_t>(size.height));
     while (!stopping_.load(std::memory_order_relaxed)) {
         take_events(reports);
+        take_shown();
         const bool waits = options_.feed && !options_.feed->flush();
-        std::array<pollfd, 2> watched{{{window_->fd(), POLLIN, 0}, {wake_fd_, POLLIN, 0}}};
+        const int times_fd = window_->present_times() != nullptr ? window_->present_times()->fd() : -1;
+        std::array<pollfd, 3> watched{{{window_->fd(), POLLIN, 0}, {wake_fd_, POLLIN, 0}, {times_fd, POLLIN, 0}}};
         (void)::poll(watched.data(), watched.size(), waits ? retry_ms : idle_ms);
     }
     if (reports.captured()) window_->release();
+}
+
+void WindowThread::take_shown() {
+    if (window_->present_times() == nullptr) return;
+    for (gl::PresentedPicture picture; window_->present_times()->next(picture);) {
+        if (picture.shown_ns == 0) {
+            ++replaced_;
+            continue;
+        }
+        const double took_ms = static_cast<double>(picture.shown_ns - picture.handed_ns) * 1e-6;
+        if (shown_ms_.size() < max_shown)
+            shown_ms_.push_back(took_ms);
+        else
+            shown_ms_[shown_ % max_shown] = took_ms;
+        ++shown_;
+    }
+}
+
+report::DisplaySummary WindowThread::displayed() const {
+    report::DisplaySummary summary;
+    summary.pictures = shown_;
+    summary.replaced = replaced_;
+    if (!shown_ms_.empty()) summary.after_ms = quantiles(shown_ms_);
+    return summary;
 }
 
 void WindowThread::take_events(input::WindowReports& reports) {

@@ -7,11 +7,13 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "input/window/window_feed.hpp"
 #include "render/gl/window_events.hpp"
 #include "rt/base/result.hpp"
 #include "rt/threads/placement.hpp"
+#include "tools/report/report.hpp"
 
 namespace surefoot::walk {
 
@@ -31,6 +33,8 @@ public:
     WindowThread& operator=(const WindowThread&) = delete;
 
     void stop();
+    /// After stop(): what the display reported of the pictures.
+    [[nodiscard]] report::DisplaySummary displayed() const;
     /// Set once the visitor has closed the window or pressed Escape. For any thread.
     [[nodiscard]] const std::atomic<bool>& left() const { return left_; }
     /// The error if it could not be placed.
@@ -39,6 +43,7 @@ public:
 private:
     void run();
     void take_events(input::WindowReports& reports);
+    void take_shown();
     void obey(input::WindowCommand command, input::WindowReports& reports);
 
     std::shared_ptr<gl::WindowEvents> window_;
@@ -48,6 +53,8 @@ private:
     std::latch placed_{1};
     std::atomic<bool> left_{false}, stopping_{false};
     int wake_fd_;
+    std::vector<double> shown_ms_;  ///< from hand-over to the display, of the newest pictures
+    std::uint64_t shown_ = 0, replaced_ = 0;
     std::thread thread_;
 };
 
