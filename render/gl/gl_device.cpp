@@ -171,6 +171,11 @@ void GlDevice::warm_up_passes() {
         if (rest_support() == RestSupport::samples) show_rest(2);
         finish_rest_frame();
     }
+    if (window_ != nullptr) {  // a window may get another size
+        const auto w = static_cast<std::int32_t>(options_.viewport.width),
+                   h = static_cast<std::int32_t>(options_.viewport.height);
+        copy_to_window({0, 0, std::max(1, w / 2), std::max(1, h / 2)});
+    }
     present();
 }
 
@@ -259,12 +264,17 @@ void GlDevice::look_for_reset() {
 /// The shown target goes to the window, if there is one.
 void GlDevice::present() {
     if (lost_ || !context_->has_window()) return;
+    const WindowSize size = window_ != nullptr ? window_->size() : WindowSize{options_.viewport.width, options_.viewport.height};
+    copy_to_window(fit_picture(options_.viewport.width, options_.viewport.height, size.width, size.height));
+    context_->present();
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_.steps.front().framebuffer);
+}
+
+void GlDevice::copy_to_window(const FittedPicture& fit) {
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_.steps.front().framebuffer);
     const auto w = static_cast<GLint>(options_.viewport.width);
     const auto h = static_cast<GLint>(options_.viewport.height);
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    const WindowSize size = window_ != nullptr ? window_->size() : WindowSize{options_.viewport.width, options_.viewport.height};
-    const FittedPicture fit = fit_picture(options_.viewport.width, options_.viewport.height, size.width, size.height);
     if (fit.x > 0 || fit.y > 0) {
         gl_.ClearColor(0, 0, 0, 1);
         gl_.Clear(GL_COLOR_BUFFER_BIT);
@@ -272,8 +282,6 @@ void GlDevice::present() {
     const bool same = fit.width == w && fit.height == h;
     gl_.BlitFramebuffer(0, 0, w, h, fit.x, fit.y, fit.x + fit.width, fit.y + fit.height, GL_COLOR_BUFFER_BIT,
                         same ? GL_NEAREST : GL_LINEAR);
-    context_->present();
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_.steps.front().framebuffer);
 }
 
 RestSupport GlDevice::rest_support() const {

@@ -14,6 +14,7 @@
 #include "render/gl/rest_targets.hpp"
 #include "render/gl/sample_targets.hpp"
 #include "render/gl/targets.hpp"
+#include "render/gl/window_fit.hpp"
 
 namespace surefoot::gl {
 
@@ -75,6 +76,7 @@ private:
     Result<void> set_up() REQUIRES(draws);
     void warm_up() REQUIRES(draws);
     void warm_up_passes() REQUIRES(draws);
+    void copy_to_window(const FittedPicture& fit) REQUIRES(draws);
     void start_picture(const Pose& pose) REQUIRES(draws);
     void set_texture_detail(std::size_t step) REQUIRES(draws);
     void draw_into(const Target& target) REQUIRES(draws);
