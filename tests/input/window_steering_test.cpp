@@ -118,15 +118,16 @@ TEST(WindowSteering, ATapOfAKeyBetweenTwoStepsCounts) {
 TEST(WindowSteering, ThePointerTurnsExactlyAsFarAsItMoved) {
     for (const int pixels : {1, 7, 50, 100}) {
         WindowRig rig;
+        const int upwards = pixels / 10;
         rig.run(5);
         for (int i = 0; i < 10; ++i) {
-            rig.push({}, pixels - 1, -pixels / 10);
+            rig.push({}, pixels - 1, -upwards);
             rig.push({}, 1);  // two of them in one step
             rig.run(8);
         }
         rig.run(1500);
         EXPECT_NEAR(rig.yaw_deg(), -0.15 * 10 * pixels, 1e-6) << "to the right by " << pixels;
-        EXPECT_NEAR(rig.pitch_deg(), 0.15 * 10 * (pixels / 10), 1e-6) << "upwards";
+        EXPECT_NEAR(rig.pitch_deg(), 0.15 * 10 * upwards, 1e-6) << "upwards";
         EXPECT_FALSE(rig.sample.pointed);
         EXPECT_EQ(rig.sample.angular_rad_s, dvec3(0.0));
     }
