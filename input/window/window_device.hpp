@@ -36,14 +36,14 @@ public:
 
     /// Attaches it, with no key down. Before the input thread starts.
     void begin(Steering& steering, std::int64_t now_ns) REQUIRES(steering.steers);
-    /// Reports all that waits; `accepted` is called with the stamp of each. Returns how many.
-    template <class Accepted>
-    std::size_t step(Steering& steering, std::int64_t now_ns, Accepted accepted) REQUIRES(steering.steers) {
+    /// Reports all that waits; `on_report` is called with the stamp of each. Returns how many.
+    template <class OnReport>
+    std::size_t step(Steering& steering, std::int64_t now_ns, OnReport on_report) REQUIRES(steering.steers) {
         std::size_t count = 0;
         for (WindowReport report; number_ >= 0 && feed_->take(report); ++count) {
             fill_state(report, state_);
             steering.report(number_, state_, now_ns);
-            accepted(report.stamp_ns);
+            on_report(report.stamp_ns);
         }
         if (count > 0) steering.drained(number_, 1);  // the feed loses none, however many wait
         return count;
