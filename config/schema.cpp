@@ -78,6 +78,18 @@ std::vector<Entry> walker_entries() {
     };
 }
 
+/// What the picture shows of the view, and the window.
+std::vector<Entry> picture_entries() {
+    return {
+        flag("fullscreen", "The window fills the screen at first; the key F11 changes that.", &S::fullscreen),
+        number("pointer_turn_deg", "degrees", 0.01, 10, "Window: turn for each pixel that the pointer moves.",
+               &S::pointer_turn_deg),
+        number("shift_x", "half widths", -8, 8,
+               "Off-axis projection: offset of the image centre to the right of the view direction.", &S::shift_x),
+        number("shift_y", "half heights", -8, 8, "Off-axis projection: offset of the image centre upwards.", &S::shift_y),
+    };
+}
+
 std::vector<Entry> make_entries(const Registry& selectors, const Registry& backends) {
     return {
         file_name("model", "The .walk model, relative to this file's folder; \"\": none, so the command line must name one.",
@@ -87,7 +99,9 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
                   "starts there.",
                   &S::path_file),
         number("lift_m", "m", -1e7, 1e7, "Height added to every pose of the path; 1.5 for recorded drives.", &S::lift_m),
-        file_name("input", "Source of steering: \"\" follows the path; \"devices\" uses connected devices; else a recording.",
+        file_name("input",
+                  "Source of steering: \"\" follows the path; \"devices\": connected devices; \"window\": its keyboard; else a "
+                  "recording.",
                   &S::input_file),
         file_name("steering", "File of input mappings; \"\": the default mapping of the device's class.", &S::steering_file),
         file_name("state",
@@ -101,9 +115,6 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         number("rate_hz", "Hz", 1, 1000, "Frame rate of the walk.", &S::rate_hz),
         integer("width", "px", 16, 16384, "Width of the picture.", &S::width),
         integer("height", "px", 16, 16384, "Height of the picture.", &S::height),
-        number("shift_x", "half widths", -8, 8,
-               "Off-axis projection: offset of the image centre to the right of the view direction.", &S::shift_x),
-        number("shift_y", "half heights", -8, 8, "Off-axis projection: offset of the image centre upwards.", &S::shift_y),
         number("budget_ms", "ms", 0, 1000, "Time that a frame may spend; 0: what the rate allows.", &S::budget_ms),
         number("accuracy", "1/rad", 0, 1e6, "Stop refining at this accuracy; 0: refine as far as the budget goes.", &S::accuracy),
         number("min_accuracy", "1/rad", 0, 5e4, "Accuracy that every frame buys first; 0: none is guaranteed.", &S::min_accuracy),
@@ -187,6 +198,8 @@ Schema::Schema(Registry selectors, Registry backends, std::span<const Renamed> r
     const std::vector<Entry> screen = screen_entries();
     const auto backend = std::ranges::find(entries_, "backend", &Entry::key);
     entries_.insert(backend + 1, screen.begin(), screen.end());
+    const std::vector<Entry> picture = picture_entries();
+    entries_.insert(std::ranges::find(entries_, string_view("budget_ms"), &Entry::key), picture.begin(), picture.end());
     defaults_.selector = selectors_.usual;
     defaults_.backend = backends_.usual;
 }

@@ -33,6 +33,8 @@ struct Settings {
     double open_limit_s = 600;  ///< the daemon's: for how long opening a model may take
     double rate_hz = 30;
     std::uint32_t width = 1280, height = 720;  ///< pixels
+    bool fullscreen = false;                   ///< of the window, at first
+    double pointer_turn_deg = 0.15;            ///< turn for each pixel of the window's pointer
     double shift_x = 0, shift_y = 0;           ///< off-axis projection, in half widths and half heights of the image
     double budget_ms = 0;                      ///< 0: what the rate allows
     double accuracy = 0;                       ///< rad^-1 to stop at; 0: as far as the budget goes

@@ -53,6 +53,7 @@ struct MotionRequest {
     double turn = 0, look = 0;  ///< turn > 0: to the left (counter-clockwise from above); look > 0: upwards
     double speed = 0;           ///< -1..1: from the slowest to the fastest factor; 0 leaves it
     bool next_viewpoint = false, reset = false, tour = false, pause = false;  ///< edges: true in the sample they happen in
+    double turn_by_rad = 0, look_by_rad = 0;  ///< by a pointer: an angle, not a rate; in the sample it happens in, as edges
 };
 
 /// How the walk follows the request: `brake` reaches it within brake_s (a device was lost), `stop` stands still in this step.
@@ -82,6 +83,7 @@ struct NavigationSample {
     std::uint64_t sequence = 0;  ///< of samples, from 1
     bool next_viewpoint = false, reset = false, tour = false, pause = false;
     bool stopped = false;  ///< emergency stop or dead-man: rest by order
+    bool pointed = false;  ///< a pointer turns the eye, or did a moment ago: it may turn faster than a stick
     PressCounts presses;   ///< up to and with this sample
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "input/devices/live.hpp"
+#include "input/devices/no_devices.hpp"
 
 namespace surefoot::input {
 
@@ -14,6 +15,7 @@ constexpr std::int64_t look_for_ns = 500'000'000;  // the finder has looked ever
 }  // namespace
 
 Result<std::unique_ptr<LiveSource>> LiveSource::open(LiveOptions options) {
+    if (!options.devices) return std::make_unique<LiveSource>(std::move(options), std::make_unique<NoDevices>());
     FinderOptions finder;
     finder.wanted = wanted_by(options.mappings);
     finder.attachment_factory = attachment_factory(options.mappings);
@@ -36,12 +38,23 @@ LiveSource::LiveSource(LiveOptions options, std::unique_ptr<DeviceSource> device
     if (!options_.lines.empty())
         panel_.emplace(options_.lines, options_.mappings, options_.open_lines, options_.lines_context, sink_,
                        options_.lines_opened);
+    if (options_.window) window_.emplace(options_.window, options_.mappings, options_.window_deg_per_px, sink_);
+    watched_.reserve(max_lines + 1);
 }
 
 void LiveSource::begin(Steering& steering, std::int64_t start_ns) {
     start_ns_ = start_ns;
     router_.emplace(options_.mappings, steering, sink_);
     if (panel_) panel_->open();
+    if (window_) window_->begin(steering, start_ns);
+    watch();
+}
+
+void LiveSource::watch() {
+    watched_.clear();
+    if (panel_) watched_.insert(watched_.end(), panel_->polled().begin(), panel_->polled().end());
+    if (window_) watched_.push_back(window_->polled());
+    if (!watched_.empty()) devices_->watch_also(watched_);
 }
 
 void LiveSource::wait(rt::Clock& /*clock*/, std::int64_t until_ns) { devices_->wait(until_ns); }
@@ -57,20 +70,23 @@ Lines LiveSource::drain(Steering& steering, std::int64_t now_ns) {
         const PanelDevice::Step step = panel_->step(steering, now_ns);
         lines = step.lines;
         if (step.reported) log_.add(now_ns);
-        devices_->watch_also(panel_->polled());
+        watch();
     }
-    steering_now_.store(router_->steering_now() + (panel_ && panel_->has_controls() ? 1 : 0), std::memory_order_relaxed);
+    if (window_) window_->step(steering, now_ns, [this](std::int64_t stamp_ns) { log_.add(stamp_ns); });
+    steering_now_.store(router_->steering_now() + (panel_ && panel_->has_controls() ? 1 : 0) + (window_ ? 1 : 0),
+                        std::memory_order_relaxed);
     if (!somebody_) warn_if_nobody_steers(now_ns);
     if (!unused_reported_ && now_ns >= start_ns_ + look_for_ns) {
         unused_reported_ = true;
-        router_->warn_unused_mappings(
-            [&](const DeviceMapping& m) { return panel_ && panel_->has_controls() && panel_->mapping() == m.name; });
+        router_->warn_unused_mappings([&](const DeviceMapping& m) {
+            return (panel_ && panel_->has_controls() && panel_->mapping() == m.name) || (window_ && window_->mapping() == m.name);
+        });
     }
     return lines;
 }
 
 void LiveSource::warn_if_nobody_steers(std::int64_t now_ns) {
-    if (router_->pluggings() > 0 || (panel_ && panel_->has_controls())) {
+    if (router_->pluggings() > 0 || window_ || (panel_ && panel_->has_controls())) {
         somebody_ = true;
     } else if (now_ns >= start_ns_ + look_for_ns) {
         somebody_ = true;
@@ -85,6 +101,7 @@ std::vector<rt::SteeringDevice> LiveSource::devices() const {
     if (router_) list = router_->known_devices();
     if (panel_ && panel_->has_controls())
         list.push_back({std::string(panel_name), class_name(DeviceClass::buttons), panel_->mapping()});
+    if (window_) list.push_back({std::string(window_device_name), "keyboard and mouse", window_->mapping()});
     return list;
 }
 

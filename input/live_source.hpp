@@ -1,7 +1,8 @@
-// Live devices as a source of reports: a thread finds and opens them, the router maps them; wired switches included.
+// Live devices as a source of reports: a thread finds and opens them, the router maps them; wired switches and a window included.
 //
 //   sf-devices: finds, opens, maps ─► LiveDevices ─► DeviceRouter ─┐
-//   sf-lines: opens ─► GpioPanel ─► PanelDevice ───────────────────┴► Steering        messages ─► ring ─► whoever prints
+//   sf-lines: opens ─► GpioPanel ─► PanelDevice ───────────────────┼► Steering        messages ─► ring ─► whoever prints
+//   sf-window: reads events ─► WindowFeed ─► WindowDevice ─────────┘
 #pragma once
 
 #include <atomic>
@@ -13,6 +14,7 @@
 #include "input/gpio/panel_device.hpp"
 #include "input/map/steering_file.hpp"
 #include "input/report_source.hpp"
+#include "input/window/window_device.hpp"
 #include "rt/exchange/spsc_ring.hpp"
 
 namespace surefoot::input {
@@ -24,10 +26,14 @@ struct LiveOptions {
     OpenLines open_lines = input::open_lines;
     void* lines_context = nullptr;
     Opening lines_opened = Opening::own_thread;
+    bool devices = true;                         ///< false: none is looked for
+    std::shared_ptr<WindowFeed> window;          ///< its keyboard and mouse steer too; null: there is none
+    double window_deg_per_px = 0.15;             ///< turn for each pixel of its pointer
     std::size_t stamps = std::size_t{1} << 20U;  ///< number of reports whose age is kept: 17 minutes at 1 kHz
 };
 
-/// For the real clock only. Without any device the walk rests until one is plugged in; one message says so, and it is no error.
+/// For the real clock only. Without any device or window the walk rests until one is plugged in; one message says so, and it is
+/// no error.
 class LiveSource final : public ReportSource {
 public:
     /// The real devices, found from now on. Error: udev cannot be used.
@@ -52,6 +58,7 @@ public:
 
 private:
     void warn_if_nobody_steers(std::int64_t now_ns);
+    void watch();
 
     LiveOptions options_;
     rt::SpscRing<MessageLine> messages_{128};
@@ -59,6 +66,8 @@ private:
     std::unique_ptr<DeviceSource> devices_;
     std::optional<DeviceRouter> router_;
     std::optional<PanelDevice> panel_;
+    std::optional<WindowDevice> window_;
+    std::vector<pollfd> watched_;  ///< of panel and window
     StampLog log_;
     std::int64_t start_ns_ = 0;
     std::atomic<int> steering_now_{0};

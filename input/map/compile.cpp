@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "input/map/mapper.hpp"
 #include "rt/base/text.hpp"
@@ -48,6 +49,10 @@ public:
         Binding b;
         b.source = controls_[*at].relative ? Binding::Source::relative : Binding::Source::axis;
         b.counts_per_s = from.counts_per_s;
+        if (controls_[*at].relative && from.deg_per_count > 0 && (from.action == Action::turn || from.action == Action::look)) {
+            b.source = Binding::Source::pointer;
+            b.rad_per_count = from.deg_per_count * std::numbers::pi / 180;
+        }
         b.own_interlock = from.rest != Rest::centre;
         set(b, 0, *at, from.action, from.invert ? -from.scale : from.scale, from.rest);
         shape(b, from.shape);
@@ -134,7 +139,8 @@ private:
     static void shape(Binding& b, const Shape& shape) {
         double half = b.rest[0].half_travel_counts();
         if (b.source == Binding::Source::stick) half = std::min(half, b.rest[1].half_travel_counts());
-        if (b.source == Binding::Source::relative) half = 1e9;  // a pace has no counts of tremor
+        if (b.source == Binding::Source::relative || b.source == Binding::Source::pointer)
+            half = 1e9;  // a pace has no counts of tremor
         b.response = response_for(shape, half);
         b.smoothing_s = shape.smoothing_s;
     }

@@ -62,6 +62,14 @@ void evaluate_relative(Binding& b, const DeviceState& state, bool fresh, double 
     b.answer.x = respond(b.response, std::clamp(b.travelled / pace_window_s, -1.0, 1.0));
 }
 
+/// Displacements are angles: each turns the eye once.
+void evaluate_pointer(Binding& b, DeviceOutput& output, const DeviceState& state, bool fresh) {
+    b.armed = true;
+    if (!fresh || !state.has_value[b.control[0]] || state.carried_over[b.control[0]]) return;
+    const double angle_rad = b.gain[0] * b.rad_per_count * state.value[b.control[0]];
+    (b.action[0] == Action::turn ? output.request.turn_by_rad : output.request.look_by_rad) += angle_rad;
+}
+
 /// A report has carried it: what another id's reports leave without a value is not at rest but unknown.
 bool was_reported(const Binding& b) { return b.reported_ns[0] >= 0; }
 
@@ -191,6 +199,9 @@ DeviceOutput evaluate(Mapper& mapper, const DeviceState& state, std::int64_t now
                 break;
             case From::relative:
                 evaluate_relative(b, state, fresh, dt_s);
+                break;
+            case From::pointer:
+                evaluate_pointer(b, output, state, fresh);
                 break;
             case From::hat:
                 evaluate_hat(b, state);

@@ -13,7 +13,8 @@ namespace surefoot::input {
 
 /// The output of one device at one moment.
 struct DeviceOutput {
-    MotionRequest request;  ///< translation and rotation each at most of length 1; edges only in the call in which they came
+    MotionRequest request;  ///< translation and rotation each at most of length 1; edges and angles of a pointer only in the call
+                            ///< in which they came
     bool neutral = true;    ///< every control that moves is in its dead zone (those not yet seen do not count)
     bool has_stop = false, stop = false;  ///< bound at all; asserted now
     bool stop_reset = false;              ///< held now
@@ -22,7 +23,7 @@ struct DeviceOutput {
 
 /// One control or pair of controls with its state. Public so that tools can show it; use compile() and evaluate().
 struct Binding {
-    enum class Source : std::uint8_t { axis, stick, relative, hat, button };
+    enum class Source : std::uint8_t { axis, stick, relative, pointer, hat, button };
     Source source = Source::axis;
     std::array<std::uint16_t, 2> control{};
     std::array<Action, 2> action{};
@@ -30,6 +31,7 @@ struct Binding {
     Response response;
     double smoothing_s = 0;
     double counts_per_s = 1000;
+    double rad_per_count = 0;  ///< pointer
     std::int64_t debounce_ns = 0;
     bool normally_closed = false;
 

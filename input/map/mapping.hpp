@@ -57,6 +57,9 @@ struct AxisMapping {
     bool invert = false;
     double scale = 1;            ///< response at full deflection; 0..1
     double counts_per_s = 1000;  ///< relative controls only (trackball, mouse, encoder): the pace that is full response
+    /// Relative controls that turn or look only: the angle of a count. So a pointer turns the eye as far as it was moved, at any
+    /// pace, without shape. 0: they set a pace.
+    double deg_per_count = 0;
 };
 
 /// Two axes that one hand moves. Axes: to the right and downwards, as HID sticks count.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace surefoot::input {
 
@@ -28,6 +29,10 @@ bool bound(MotionRequest& request) {
         request.look /= turning;
     }
     request.speed = std::clamp(request.speed, -1.0, 1.0);
+    for (double* angle : {&request.turn_by_rad, &request.look_by_rad}) {
+        finite = finite && std::isfinite(*angle);
+        *angle = std::isfinite(*angle) ? std::clamp(*angle, -std::numbers::pi, std::numbers::pi) : 0;
+    }
     return finite;
 }
 
@@ -40,6 +45,8 @@ MotionRequest merge(std::span<const MotionRequest> requests) {
         sum.turn += request.turn;
         sum.look += request.look;
         sum.speed += request.speed;
+        sum.turn_by_rad += request.turn_by_rad;
+        sum.look_by_rad += request.look_by_rad;
         sum.next_viewpoint |= request.next_viewpoint;
         sum.reset |= request.reset;
         sum.tour |= request.tour;

@@ -96,6 +96,10 @@ Result<void> read_axis(TableReader& table, std::vector<AxisMapping>& into) {
     table.flag("invert", m.invert);
     table.number("scale", 0, 1, "", m.scale);
     table.number("counts_per_s", 1, 1e6, "counts/s", m.counts_per_s);
+    table.number("deg_per_count", 0, 45, "degrees", m.deg_per_count);
+    if (m.deg_per_count > 0 && m.action != Action::turn && m.action != Action::look)
+        table.refuse("deg_per_count", fmt::format("is an angle, and {} is none", name_of(m.action)),
+                     "Use the action turn or look, or write counts_per_s");
     into.push_back(m);
     return table.finish();
 }

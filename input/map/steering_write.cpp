@@ -89,6 +89,7 @@ void write_device(Writer& w, const DeviceMapping& m) {
         w.flag("invert", a.invert);
         w.number("scale", a.scale, 1);
         w.number("counts_per_s", a.counts_per_s, AxisMapping{}.counts_per_s);
+        w.number("deg_per_count", a.deg_per_count, AxisMapping{}.deg_per_count);
     }
     for (const StickMapping& s : m.sticks) {
         w.header("[[device.stick]]");

@@ -11,6 +11,7 @@ namespace surefoot::input {
 
 namespace {
 
+constexpr std::int64_t pointer_pause_ns = 250'000'000;  // a hand on a pointer that rests so long has ended its turn
 constexpr double two_pi = 2 * std::numbers::pi, two_pi_low = 2.4492935982947064e-16;  // their sum is 2 pi to 32 digits
 
 template <class V>
@@ -71,6 +72,7 @@ void count(PressCounts& presses, const MotionRequest& request) {
 void follow(MotionState& state, const MotionLimits& limits, const MotionRequest& request, Order order, double dt_s) {
     const dvec3 walk{request.side, request.up, -request.forward};
     const dvec2 turning{request.turn, request.look};
+    if (order == Order::brake) state.pointer.rest();
     if (order == Order::walk) {
         state.walk.step(limits.filter, walk, dt_s);
         state.turning.step(limits.filter, turning, dt_s);
@@ -91,7 +93,8 @@ void follow(MotionState& state, const MotionLimits& limits, const MotionRequest&
 void integrate(MotionState& state, const MotionLimits& limits, const dvec3& velocity, dvec2 rates, double dt_s,
                const Ground& ground) {
     const double yaw_before = state.yaw.value, pitch_before = state.pitch.value;
-    if (std::abs(pitch_before + rates.y * dt_s) > limits.max_pitch_rad && pitch_before * rates.y > 0) rates.y = state.rates.y = 0;
+    if (std::abs(pitch_before + rates.y * dt_s) > limits.max_pitch_rad && pitch_before * rates.y > 0)
+        rates.y = state.rates.y = state.pointer.rates.y = state.pointer.owed.y = 0;
     state.yaw.add(rates.x * dt_s);
     state.pitch.add(rates.y * dt_s);
     const dquat frame =
@@ -141,6 +144,7 @@ bool place(MotionState& state, const Pose& pose) {
     state.velocity = dvec3(0.0);
     state.rise_m_s = 0;
     state.rates = dvec2(0.0);
+    state.pointer.rest();
     state.walk.set(dvec3(0.0));
     state.turning.set(dvec2(0.0));
     return true;
@@ -164,18 +168,25 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     const std::int64_t passed = state.last_ns < 0 ? 0 : std::max<std::int64_t>(0, now_ns - state.last_ns);
     const double dt_s = std::min(static_cast<double>(passed) * 1e-9, longest_step_s);
     state.last_ns = std::max(state.last_ns, now_ns);
+    const bool points = request.turn_by_rad != 0 || request.look_by_rad != 0;
+    if (points) {
+        state.pointed_ns = state.last_ns;
+        state.pointer.add(dvec2(request.turn_by_rad, request.look_by_rad));
+    }
     if (command.order == Order::stop) {
         if (ground.halt != nullptr) ground.halt(ground.context);
         state.velocity = dvec3(0.0);
         state.rise_m_s = 0;
         state.rates = dvec2(0.0);
+        state.pointer.rest();
         state.walk.set(dvec3(0.0));
         state.turning.set(dvec2(0.0));
     } else if (dt_s > 0) {
         const dvec3 velocity = state.velocity;
         const dvec2 rates = state.rates;
         follow(state, limits, request, command.order, dt_s);
-        integrate(state, limits, 0.5 * (velocity + state.velocity), 0.5 * (rates + state.rates), dt_s, ground);
+        const dvec2 turned = state.pointer.step(limits.pointer_rad_s, limits.pointer_rad_s2, dt_s);
+        integrate(state, limits, 0.5 * (velocity + state.velocity), 0.5 * (rates + state.rates) + turned / dt_s, dt_s, ground);
     }
     count(state.presses, request);
 
@@ -183,7 +194,9 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     sample.pose = pose_of(state);
     const dquat frame = walker_frame(state, limits.level || ground.walks(), state.yaw.value, state.pitch.value);
     sample.velocity_m_s = frame * state.velocity + dvec3(0, state.rise_m_s, 0);
-    sample.angular_rad_s = dvec3(0, state.rates.x, 0) + about_y(state.yaw.value) * dvec3(state.rates.y, 0, 0);
+    const dvec2 turning = state.rates + state.pointer.rates;
+    sample.angular_rad_s = dvec3(0, turning.x, 0) + about_y(state.yaw.value) * dvec3(turning.y, 0, 0);
+    sample.pointed = state.pointer.moves() || (state.pointed_ns >= 0 && now_ns - state.pointed_ns < pointer_pause_ns);
     sample.stamp_ns = command.stamp_ns;
     sample.sequence = ++state.sequence;
     sample.next_viewpoint = request.next_viewpoint;

@@ -9,6 +9,7 @@
 
 #include "input/controls.hpp"
 #include "input/motion/filter.hpp"
+#include "input/motion/pointer_turn.hpp"
 
 namespace surefoot::input {
 
@@ -33,6 +34,7 @@ struct MotionLimits {
     double accel_m_s2 = 8;               ///< of the velocity in the walker's frame
     double turn_rad_s = 1.2, look_rad_s = 0.9;
     double accel_rad_s2 = 8;
+    double pointer_rad_s = 8, pointer_rad_s2 = 40;  ///< of turns by a pointer, beside those
     double max_pitch_rad = 1.48;
     double brake_s = 0.03;      ///< Order::brake reaches its request within this, from any speed
     bool level = false;         ///< true: forward is level however the eye looks; false: along the eye's -Z
@@ -61,7 +63,9 @@ struct MotionState {
     dvec2 rates{0.0};     ///< yaw, pitch; rad/s
     OneEuro<dvec3> walk;
     OneEuro<dvec2> turning;
+    PointerTurn pointer;
     std::int64_t last_ns = -1;
+    std::int64_t pointed_ns = -1;  ///< when a pointer last moved
     std::uint64_t sequence = 0;
     PressCounts presses;
     std::uint64_t refused = 0;     ///< non-finite commands or ground answers; taken as rest
@@ -86,8 +90,9 @@ Pose carried(const NavigationSample& sample, double by_s);
 
 /// The pose `lead_s` after the sample if the hand stays as it is. Its uncertainty bounds the distance to any pose that the limits
 /// allow then. The bound covers a stop at any moment, by order or by a wall, and a new start in any direction. It holds for every
-/// input and order, except `brake` towards a moving request. `rise_m_s2`: that of the Ground. The bound: |v(s) - v0| <= |v0| + A
-/// s, integrated over the lead t, with A = a + |v0| (|w0| + alpha t / 2), as the walker's frame turns.
+/// input and order, except `brake` towards a moving request and the first moment of a pointer's turn. `rise_m_s2`: that of the
+/// Ground. The bound: |v(s) - v0| <= |v0| + A s, integrated over the lead t, with A = a + |v0| (|w0| + alpha t / 2), as the
+/// walker's frame turns.
 Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double rise_m_s2 = 0);
 
 }  // namespace surefoot::input

@@ -30,11 +30,12 @@ Prediction predict(const NavigationSample& sample, const MotionLimits& limits, d
     const double speed = glm::length(sample.velocity_m_s), turning = glm::length(sample.angular_rad_s);
     Prediction ahead;
     ahead.pose = carried(sample, t);
-    const double accel = limits.accel_m_s2 + rise_m_s2 + speed * (turning + 0.5 * limits.accel_rad_s2 * t);
+    const double accel_rad_s2 = limits.accel_rad_s2 + (sample.pointed ? limits.pointer_rad_s2 : 0);
+    const double accel = limits.accel_m_s2 + rise_m_s2 + speed * (turning + 0.5 * accel_rad_s2 * t);
     ahead.uncertainty_m = strayed(accel, speed, t);
     // Heading and pitch turn one after the other, the prediction about one axis: they differ by half their product.
-    const double max_turning = turning + limits.accel_rad_s2 * t;
-    ahead.uncertainty_rad = strayed(limits.accel_rad_s2, turning, t) + 0.5 * max_turning * max_turning * t * t;
+    const double max_turning = turning + accel_rad_s2 * t;
+    ahead.uncertainty_rad = strayed(accel_rad_s2, turning, t) + 0.5 * max_turning * max_turning * t * t;
     return ahead;
 }
 

@@ -13,10 +13,13 @@ namespace {
 constexpr double longest_slew_s = 0.05;               // after a stall the slew does not leap
 constexpr std::int64_t brake_window_ns = 50'000'000;  // for so long after a loss the motion brakes
 
-bool requests_motion(const MotionRequest& w) { return w.forward != 0 || w.side != 0 || w.up != 0 || w.turn != 0 || w.look != 0; }
+bool requests_motion(const MotionRequest& w) {
+    return w.forward != 0 || w.side != 0 || w.up != 0 || w.turn != 0 || w.look != 0 || w.turn_by_rad != 0 || w.look_by_rad != 0;
+}
 
 MotionRequest without_edges(MotionRequest request) {
     request.next_viewpoint = request.reset = request.tour = request.pause = false;
+    request.turn_by_rad = request.look_by_rad = 0;
     return request;
 }
 
@@ -29,7 +32,7 @@ void slew(MotionRequest& at, const MotionRequest& to, double max_step) {
     };
     const dvec3 walk = part({at.forward, at.side, at.up}, {to.forward, to.side, to.up});
     const dvec3 turning = part({at.turn, at.look, 0}, {to.turn, to.look, 0});
-    at = to;  // edges pass
+    at = to;  // edges and angles of a pointer pass
     at.forward = walk.x, at.side = walk.y, at.up = walk.z;
     at.turn = turning.x, at.look = turning.y;
 }
@@ -93,6 +96,8 @@ DeviceOutput combined(const DeviceOutput& older, const DeviceOutput& newer) {
     both.request.reset |= older.request.reset;
     both.request.tour |= older.request.tour;
     both.request.pause |= older.request.pause;
+    both.request.turn_by_rad += older.request.turn_by_rad;
+    both.request.look_by_rad += older.request.look_by_rad;
     both.has_stop |= older.has_stop;
     both.stop |= older.stop;
     both.has_dead_man |= older.has_dead_man;

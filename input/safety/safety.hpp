@@ -82,8 +82,8 @@ struct SafetyState {
 Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Source> sources, const Lines& lines,
              std::int64_t now_ns);
 
-/// Combines two outputs of evaluate() within one step. Request: the newer one. Edges: of both. Stop: if either has it. Dead-man:
-/// if both have it.
+/// Combines two outputs of evaluate() within one step. Request: the newer one. Edges and angles of a pointer: of both. Stop: if
+/// either has it. Dead-man: if both have it.
 DeviceOutput combined(const DeviceOutput& older, const DeviceOutput& newer);
 
 }  // namespace surefoot::input

@@ -24,6 +24,8 @@ struct Backend {
 };
 
 constexpr std::string_view usual_backend = "egl";
+/// The one with a window, whose keyboard and mouse may steer.
+constexpr std::string_view window_backend = "window";
 
 std::span<const Backend> backends();
 const Backend& backend_of(BackendKind kind);

@@ -7,7 +7,7 @@
 
 #include "render/gl/api.hpp"
 #include "render/gl/device.hpp"
-#include "render/gl/fit_picture.hpp"
+#include "render/gl/pixel_rows.hpp"
 
 namespace surefoot::gl {
 
@@ -24,8 +24,10 @@ public:
 
     /// True where the default framebuffer is a window: the frame is blitted there, then present() swaps.
     [[nodiscard]] virtual bool has_window() const { return false; }
-    /// Of the default framebuffer, or of pixel_rows().
-    [[nodiscard]] virtual Window window() const { return {}; }
+    /// The window and its events; null without one.
+    [[nodiscard]] virtual std::shared_ptr<WindowEvents> window() const { return nullptr; }
+    /// Of the default framebuffer. Without a size: the picture's own.
+    [[nodiscard]] virtual Surface surface() const { return {}; }
     /// Memory that the picture is copied to before present(), where there is no window.
     [[nodiscard]] virtual PixelRows pixel_rows() { return {}; }
     /// What was drawn must be done before present(): the screen does not wait for it.
@@ -41,7 +43,7 @@ public:
 Result<std::unique_ptr<Context>> open_egl_surfaceless();
 Result<std::unique_ptr<Context>> open_egl_device();
 Result<std::unique_ptr<Context>> open_osmesa();
-Result<std::unique_ptr<Context>> open_window(model::Viewport viewport, const std::string& title);
+Result<std::unique_ptr<Context>> open_window(const DeviceOptions& options);
 Result<std::unique_ptr<Context>> open_kms(const ScreenOptions& options);
 
 /// Opens the backend of options.kind (not null).

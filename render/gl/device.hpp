@@ -22,6 +22,8 @@
 
 namespace surefoot::gl {
 
+class WindowEvents;
+
 enum class BackendKind { egl, device, window, kms, osmesa, null };  ///< backends.hpp has them by name
 
 /// An item to be drawn: one representation of a node.
@@ -74,6 +76,7 @@ struct DeviceOptions {
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
     ScreenOptions screen;
+    bool fullscreen = false;  ///< the window fills the screen at first
     std::array<float, 3> sky = model::usual_sky;
     NullOptions null;           ///< of the null backend
     bool rest = false;          ///< has targets for a picture at rest
@@ -108,6 +111,8 @@ public:
     virtual ~Device() = default;
     [[nodiscard]] virtual std::string renderer() const = 0;  ///< GL_RENDERER, or "null"
     [[nodiscard]] virtual bool software() const = 0;
+    /// The window that shows the pictures, with what its visitor does; null without one. It may outlive the device.
+    [[nodiscard]] virtual std::shared_ptr<WindowEvents> window() const { return nullptr; }
     /// Samples of a pixel that frames are drawn with. Others than requested where the driver has no such number.
     [[nodiscard]] virtual std::uint32_t samples() const { return 1; }
     /// The filter that textures are read by, unless set_filter() asks for the other; never `automatic`.
@@ -164,8 +169,9 @@ public:
     /// Ends a frame at rest: waits for all slices. The shown picture is whole.
     virtual void finish_rest_frame() REQUIRES(draws) {}
 
-    /// Hands the shown picture to the window or screen, if there is one. The driver may wait for the display, and waits until the
-    /// picture is shown where the display tells. Nothing on a lost device.
+    /// Hands the shown picture to the window or screen, if there is one: as large as fits, in its own shape, with black beside
+    /// it. The driver may wait for the display, and waits until the picture is shown where the display tells. Nothing on a lost
+    /// device.
     virtual rt::Shown present() REQUIRES(draws) { return {rt::ShownBy::hand_over, 0, 0}; }
 
     [[nodiscard]] virtual FrameStats stats() const REQUIRES(draws) = 0;

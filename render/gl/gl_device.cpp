@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "render/gl/window_events.hpp"
+
 namespace surefoot::gl {
 
 namespace {
@@ -161,6 +163,11 @@ void GlDevice::warm_up_passes() {
         }
         if (rest_support() == RestSupport::samples) show_rest(2);
         finish_rest_frame();
+    }
+    if (context_->has_window()) {  // a window may get another size
+        const auto w = static_cast<std::int32_t>(options_.viewport.width),
+                   h = static_cast<std::int32_t>(options_.viewport.height);
+        copy_to_window({0, 0, std::max(1, w / 2), std::max(1, h / 2)}, false);
     }
     present();
 }

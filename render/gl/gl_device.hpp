@@ -14,6 +14,7 @@
 #include "render/gl/rest_targets.hpp"
 #include "render/gl/sample_targets.hpp"
 #include "render/gl/targets.hpp"
+#include "render/gl/window_fit.hpp"
 
 namespace surefoot::gl {
 
@@ -27,6 +28,7 @@ public:
 
     [[nodiscard]] std::string renderer() const override { return renderer_; }
     [[nodiscard]] bool software() const override { return software_; }
+    [[nodiscard]] std::shared_ptr<WindowEvents> window() const override { return context_->window(); }
     [[nodiscard]] std::uint32_t samples() const override { return samples_.samples; }
     [[nodiscard]] rt::TextureFilter filter() const override;
     [[nodiscard]] bool switches_filter() const override;
@@ -76,6 +78,7 @@ private:
     Result<void> set_up() REQUIRES(draws);
     void warm_up() REQUIRES(draws);
     void warm_up_passes() REQUIRES(draws);
+    void copy_to_window(const FittedPicture& fit, bool half_turn) REQUIRES(draws);
     void start_picture(const Pose& pose) REQUIRES(draws);
     void set_texture_detail(std::size_t step) REQUIRES(draws);
     void draw_into(const Target& target) REQUIRES(draws);

@@ -1,6 +1,4 @@
 // Presenting: the shown target goes to the window or the screen (gl_device.hpp).
-#include <array>
-
 #include "render/gl/gl_device.hpp"
 
 namespace surefoot::gl {
@@ -9,7 +7,7 @@ namespace surefoot::gl {
 void GlDevice::prepare_presenting() {
     const PixelRows rows = context_->pixel_rows();
     if (rows.first != nullptr) {
-        copier_ = RowCopier(options_.viewport.width, options_.viewport.height, rows.window);
+        copier_ = RowCopier(options_.viewport.width, options_.viewport.height, rows.surface);
         copied_pixels_.resize(std::size_t{options_.viewport.width} * options_.viewport.height);
     }
     if (rows.first == nullptr && !context_->presents_at_once()) return;
@@ -35,25 +33,28 @@ rt::Shown GlDevice::present() {
 }
 
 void GlDevice::fill_window() {
+    const Surface surface = context_->surface();
+    const std::uint32_t width = options_.viewport.width, height = options_.viewport.height;
+    copy_to_window(
+        surface.width > 0 ? fit_picture(width, height, surface.width, surface.height) : fit_picture(width, height, width, height),
+        surface.half_turn);
+    if (context_->presents_at_once()) gl_.Finish();
+}
+
+void GlDevice::copy_to_window(const FittedPicture& fit, bool half_turn) {
     const auto width = static_cast<GLint>(options_.viewport.width), height = static_cast<GLint>(options_.viewport.height);
-    const Window window = context_->window();
-    WindowPart part{0, 0, width, height};
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_.steps.front().framebuffer);
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    if (window.width > 0) {
-        part = fitted(options_.viewport.width, options_.viewport.height, window);
-        if (!part.fills(window)) {
-            gl_.ClearColor(0, 0, 0, 1);
-            gl_.Clear(GL_COLOR_BUFFER_BIT);
-        }
+    if (fit.x > 0 || fit.y > 0) {
+        gl_.ClearColor(0, 0, 0, 1);
+        gl_.Clear(GL_COLOR_BUFFER_BIT);
     }
-    const GLint left = part.x, right = part.x + part.width, low = part.y, high = part.y + part.height;
-    const GLenum filter = part.width == width && part.height == height ? GL_NEAREST : GL_LINEAR;
-    if (window.half_turn)
+    const GLint left = fit.x, right = fit.x + fit.width, low = fit.y, high = fit.y + fit.height;
+    const GLenum filter = fit.width == width && fit.height == height ? GL_NEAREST : GL_LINEAR;
+    if (half_turn)
         gl_.BlitFramebuffer(0, 0, width, height, right, high, left, low, GL_COLOR_BUFFER_BIT, filter);
     else
         gl_.BlitFramebuffer(0, 0, width, height, left, low, right, high, GL_COLOR_BUFFER_BIT, filter);
-    if (context_->presents_at_once()) gl_.Finish();
 }
 
 /// The targets' own order of channels, so reading only copies.

@@ -33,7 +33,7 @@ struct OpenScreen {
     std::unique_ptr<KmsCard> card;
     std::unique_ptr<KmsScreen> screen;
     GraphicsConsole console;
-    Window window;  ///< of its buffers
+    Surface surface;  ///< of its buffers
     std::string name;
 };
 
@@ -59,7 +59,7 @@ public:
                          "Install libegl-mesa0 and libgl1-mesa-dri", ErrorKind::unsupported};
         EGLConfig config = nullptr;
         if (!matching_config(config)) return none;
-        gbm_surface_ = gbm_.CreateSurface(device_, screen_->window.width, screen_->window.height, GBM_FORMAT_XRGB8888,
+        gbm_surface_ = gbm_.CreateSurface(device_, screen_->surface.width, screen_->surface.height, GBM_FORMAT_XRGB8888,
                                           GBM_BO_USE_SCANOUT | GBM_BO_USE_RENDERING);
         if (gbm_surface_ == nullptr) return none;
         egl_.BindAPI(EGL_OPENGL_API);
@@ -70,7 +70,7 @@ public:
     /// Of a context that could not be made.
     std::unique_ptr<OpenScreen> take_screen() { return std::move(screen_); }
     [[nodiscard]] bool has_window() const override { return true; }
-    [[nodiscard]] Window window() const override { return screen_->window; }
+    [[nodiscard]] Surface surface() const override { return screen_->surface; }
     [[nodiscard]] bool presents_at_once() const override { return true; }
     rt::Shown present() override {
         egl_.SwapBuffers(display_, surface_);
@@ -102,8 +102,8 @@ private:
             if (known.buffer != 0) continue;
             int error = 0;
             known.handle = handle;
-            known.buffer =
-                screen_->card->add_buffer(handle, gbm_.BufferStride(drawn), screen_->window.width, screen_->window.height, error);
+            known.buffer = screen_->card->add_buffer(handle, gbm_.BufferStride(drawn), screen_->surface.width,
+                                                     screen_->surface.height, error);
             return known.buffer;
         }
         return 0;
@@ -160,7 +160,7 @@ public:
     [[nodiscard]] bool reports_resets() const override { return drawing_->reports_resets(); }
     [[nodiscard]] PixelRows pixel_rows() override {
         const Plain& plain = plain_[hidden_];
-        return {plain.pixels, plain.stride / 4, screen_->window};
+        return {plain.pixels, plain.stride / 4, screen_->surface};
     }
     rt::Shown present() override {
         const rt::Shown shown = screen_->screen->present(plain_[hidden_].buffer);
@@ -184,8 +184,8 @@ private:
     int make(Plain& plain) {
         const int file = screen_->card->file();
         drm_mode_create_dumb create{};
-        create.width = screen_->window.width;
-        create.height = screen_->window.height;
+        create.width = screen_->surface.width;
+        create.height = screen_->surface.height;
         create.bpp = 32;
         if (screen_->drm.Ioctl(file, DRM_IOCTL_MODE_CREATE_DUMB, &create) != 0) return errno;
         plain.handle = create.handle;
@@ -225,8 +225,8 @@ Result<std::unique_ptr<OpenScreen>> try_screen(const Drm& drm, const ScreenOptio
     open->card = std::move(*card);
     open->name = (*chosen)->name;
     const bool swapped = options.rotation_deg == 90 || options.rotation_deg == 270;
-    open->window = {swapped ? mode->height : mode->width, swapped ? mode->width : mode->height,
-                    options.rotation_deg == 180 && !open->card->rotates()};
+    open->surface = {swapped ? mode->height : mode->width, swapped ? mode->width : mode->height,
+                     options.rotation_deg == 180 && !open->card->rotates()};
     if (open->card->take() != 0) {
         held = true;
         const std::string holders = open->card->holders();

@@ -24,11 +24,12 @@ struct LoopState {
     FrameLoopResult result;
 };
 
+bool is_set(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(std::memory_order_relaxed); }
+
 bool goes_on(const FrameLoopOptions& o, const LoopState& s) {
-    if (o.stop != nullptr && o.stop->load(std::memory_order_relaxed)) return false;
-    if (o.failed != nullptr && o.failed->load(std::memory_order_relaxed)) return false;
+    if (is_set(o.stop) || is_set(o.failed) || is_set(o.left)) return false;
     if (o.control != nullptr && s.slot >= o.control->slots()) return false;
-    return o.frames == 0 || s.result.run < o.frames;
+    return o.frames == 0 || s.result.run < (is_set(o.prolonged) ? o.prolonged_frames : o.frames);
 }
 
 FrameRecord new_record(const FrameLoopOptions& o, const Grid& grid, const LoopState& s) {

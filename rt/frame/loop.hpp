@@ -48,6 +48,9 @@ struct FrameLoopOptions {
     std::int64_t period_ns = 16'666'667;
     std::int64_t t0_ns = 0;    ///< 0: the first slot is due one period after the call
     std::uint64_t frames = 0;  ///< frames to run; 0: until stopped (or the control schedule ends)
+    /// Once set, prolonged_frames counts in place of `frames`; may be null.
+    const std::atomic<bool>* prolonged = nullptr;
+    std::uint64_t prolonged_frames = 0;
     LatePolicy late = LatePolicy::lock;
     /// Pictures are presented, and judged by when that is done. False (the virtual clock): a frame ends when it is whole.
     bool shows = false;
@@ -56,6 +59,7 @@ struct FrameLoopOptions {
     const ControlSchedule* control = nullptr;   ///< not null: ends after its last block
     const std::atomic<bool>* stop = nullptr;    ///< read once a frame
     const std::atomic<bool>* failed = nullptr;  ///< the same; set when the stages cannot continue
+    const std::atomic<bool>* left = nullptr;    ///< the same; set when the visitor has gone
     /// How often the process was continued after a stop; counted by a SIGCONT handler, see count_continues(). May be null.
     const std::atomic<std::uint32_t>* continued = nullptr;
     std::span<const pid_t> rasterisers;          ///< the driver's threads, for raster_cpu_ns and known waits

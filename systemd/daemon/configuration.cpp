@@ -27,7 +27,7 @@ std::vector<Error> own_rules(const config::Configuration& c, const std::string& 
               "Remove control, or use `surefoot walk`");
     if (s.clock != rt::ClockKind::real)
         wrong("clock", fmt::format("A service needs the real clock, not \"{}\"", rt::name_of(s.clock)), "Remove clock");
-    if (!s.steering_file.empty() && s.input_file.empty())
+    if (!s.steering_file.empty() && s.input_file.empty() && s.backend != walk::window_input)
         wrong("steering", "A steering file needs an input, and none is set", "Add input = \"devices\", or remove steering");
     if (!s.monitor.empty() && s.monitor != no_monitor) {
         if (const auto address = monitor::parse_address(s.monitor); !address)
@@ -80,6 +80,7 @@ walk::WalkRequest request_of(const config::Configuration& configuration, const s
     walk::apply_settings(configuration, request);
     request.config_file = config_file;
     request.endless = true;
+    request.may_leave = false;  // a visitor must not end the service
     return request;
 }
 

@@ -74,7 +74,7 @@ walk::WalkObserver observer_of(Log& log, ServiceState& state, Bursts& bursts, co
 
 /// Checks before the first frame that an emergency stop can be stored. Otherwise the next start would forget it.
 Result<void> check_state(const walk::WalkRequest& request) {
-    if (request.input_file != walk::live_input) return {};
+    if (!walk::is_steered_live(request)) return {};
     const std::string file = walk::state_directory(request.state_dir) + "/probe";
     auto probe = AtomicFile::create(file);
     if (!probe) return probe.error();

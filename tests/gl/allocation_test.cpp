@@ -11,7 +11,9 @@
 
 #include "render/effects/effects.hpp"
 #include "render/gl/device.hpp"
+#include "render/gl/window_events.hpp"
 #include "tests/gl/small_models.hpp"
+#include "tests/gl/x_server.hpp"
 
 namespace {
 thread_local bool counting = false;
@@ -196,6 +198,40 @@ TEST(Allocation, a_picture_at_rest_makes_none_and_compiles_nothing) {
     }
     counting = false;
     EXPECT_EQ(counted, 0);
+}
+
+TEST(Allocation, a_window_of_another_size_makes_none_and_compiles_nothing) {
+    if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
+    auto server = test::XServer::start();
+    if (!server) GTEST_SKIP() << server.error().text();
+    auto visitor = test::XVisitor::come();
+    if (!visitor) GTEST_SKIP() << visitor.error().text();
+    const auto scene = many_squares();
+    gl::DeviceOptions options;
+    options.kind = gl::BackendKind::window;
+    options.viewport = {64, 64};
+    auto device = gl::open_device(options);
+    if (!device) GTEST_SKIP() << device.error().text();
+    (*device)->draws.plays();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    const auto window = (*device)->window();
+    for (const unsigned width : {64U, 200U}) {
+        (*visitor)->resize(window->id(), width, 100);
+        for (int i = 0; i < 200 && window->size() != gl::WindowSize{width, 100}; ++i) {
+            test::wait_ms(5);
+            for (WindowEvent event; window->next(event);) {
+            }
+        }
+        ASSERT_EQ(window->size(), (gl::WindowSize{width, 100}));
+        counted = 0;
+        counting = true;
+        for (int i = 0; i < 3; ++i) {
+            frame(**device, scene.items);
+            (*device)->present();
+        }
+        counting = false;
+        EXPECT_EQ(counted, 0) << "in a window of " << width << " pixels";
+    }
 }
 
 TEST(Allocation, a_frame_on_null_makes_none) {

@@ -40,6 +40,7 @@ inline const std::vector<Room>& rooms() {
         {"input/motion", {"rt/", "input", "input/"}},
         {"input/replay", {"rt/", "input", "input/"}},
         {"input/safety", {"rt/", "input", "input/"}},
+        {"input/window", {"rt/", "input", "input/"}},
         {"render/model", {}},
         {"render/model/ground", {"render/model"}},
         {"render/image", {}},

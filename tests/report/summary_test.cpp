@@ -204,7 +204,9 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                                    "shown_interval_ms",
                                    "shown_error_us",
                                    "animation_error_ms",
-                                   "one_percent_low_hz"}));
+                                   "one_percent_low_hz",
+                                   "display"}));
+    EXPECT_TRUE(json["display"].is_null()) << "it reported nothing";
     for (const char* shown : {"shown_by", "shown_interval_ms", "shown_error_us", "animation_error_ms", "one_percent_low_hz"})
         EXPECT_TRUE(json[shown].is_null()) << shown << ": nothing was shown, so nothing is said of it";
     EXPECT_EQ(keys_of(json["rest"]), (Keys{"frames", "full_detail_frames", "samples", "full_detail_ms"}));

@@ -274,6 +274,24 @@ TEST(Loop, StopsOnRequestAndDropsRatherThanWaits) {
     EXPECT_EQ(ring.dropped(), 2U);
 }
 
+TEST(Loop, EndsWhenTheVisitorLeavesAndGoesOnWhereHeSteers) {
+    VirtualClock clock;
+    Stages stages(clock);
+    SpscRing<FrameRecord> ring(64);
+    FrameLoopOptions options;
+    options.period_ns = 10 * ms;
+    options.frames = 6;
+    options.prolonged_frames = 9;
+    std::atomic<bool> prolonged{false}, left{false};
+    options.prolonged = &prolonged;
+    options.left = &left;
+    EXPECT_EQ(run_frame_loop(options, clock, stages, ring).run, 6U) << "nobody steered";
+    prolonged = true;
+    EXPECT_EQ(run_frame_loop(options, clock, stages, ring).run, 9U);
+    stages.in_account = [&] { left = true; };
+    EXPECT_EQ(run_frame_loop(options, clock, stages, ring).run, 4U);
+}
+
 TEST(WaitEstimate, AnOrdinaryWaitIsKnownAndATheftFromTheRasterisersIsNot) {
     WaitEstimate estimate;
     const ThreadClocks::Spent spent{8 * ms, 5 * ms};

@@ -127,6 +127,50 @@ TEST(SettingsRequest, ARuleThatIsBrokenNamesItsOption) {
     EXPECT_EQ(place([](WalkRequest& r) { r.endless = true, r.ledger_file = "l.csv"; }), "endless walk");
 }
 
+TEST(SettingsRequest, AWindowSteersUnlessThePathOrARecordingMust) {
+    WalkRequest request;
+    EXPECT_FALSE(window_steers(request)) << "no window";
+    request.backend = gl::window_backend;
+    EXPECT_TRUE(window_steers(request)) << "off the path, once somebody does";
+    EXPECT_TRUE(check_request(request).ok());
+    request.steering_file = "keys.toml";
+    EXPECT_TRUE(check_request(request).ok()) << "it has a device to map";
+    request.input_file = live_input;
+    EXPECT_TRUE(window_steers(request)) << "both steer";
+    request.input_file = window_input;
+    EXPECT_TRUE(window_steers(request));
+    EXPECT_TRUE(is_steered_live(request));
+    request.fullscreen = true;
+    EXPECT_TRUE(check_request(request).ok());
+    request.input_file = "a.hid";
+    EXPECT_FALSE(window_steers(request));
+    EXPECT_FALSE(is_steered_live(request));
+    request.input_file.clear();
+    request.control = true;
+    EXPECT_FALSE(window_steers(request)) << "nobody steers the same way twice";
+    request.control = false;
+    request.clock = rt::ClockKind::virtual_time;
+    EXPECT_FALSE(window_steers(request));
+
+    const auto place = [](auto change) {
+        WalkRequest wrong;
+        change(wrong);
+        const auto checked = check_request(wrong);
+        return checked.ok() ? std::string("fine") : checked.error().place;
+    };
+    EXPECT_EQ(place([](WalkRequest& r) { r.input_file = window_input; }), "--input window");
+    EXPECT_EQ(place([](WalkRequest& r) { r.fullscreen = true; }), "--fullscreen");
+}
+
+TEST(SettingsRequest, TheWindowAsInputIsNoFileName) {
+    config::Configuration c(settings_schema());
+    ASSERT_TRUE(config::load_text(c, "input = \"window\"\nbackend = \"window\"\nfullscreen = true\n", "/etc/s.toml").ok());
+    WalkRequest request;
+    apply_settings(c, request);
+    EXPECT_EQ(request.input_file, window_input);
+    EXPECT_TRUE(request.fullscreen);
+}
+
 TEST(SettingsRequest, ALaterWalkKeepsTheProcesssRasterisers) {
     WalkRequest first, later;
     first.rasterisers = 2;

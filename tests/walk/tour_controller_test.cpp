@@ -49,6 +49,21 @@ protected:
     std::int64_t now_ns_ = 0;
 };
 
+TEST_F(TourControllerTest, ATourFromTheStartFollowsThePathUntilTheHandMoves) {
+    tour_controller_.begin_tour(100 * tick_ns);
+    run(0.1);
+    EXPECT_EQ(x(), 0) << "it begins with the walk, not before";
+    run(2.1);
+    EXPECT_NEAR(x(), 20, 0.1);
+    EXPECT_EQ(tour_controller_.jumps(), 0U) << "it stands where it begins";
+    run(0.5, 1.4);
+    EXPECT_FALSE(tour_controller_.touring());
+    const double left_at = x();
+    run(1.0);
+    EXPECT_EQ(x(), left_at);
+    EXPECT_LT(z(), -0.5);
+}
+
 TEST_F(TourControllerTest, ViewpointsLieAtEqualTimesAndComeInTurn) {
     for (int i = 1; i <= viewpoint_count; ++i) {
         run(0.1, 0, &input::NavigationSample::next_viewpoint);

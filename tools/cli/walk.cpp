@@ -56,6 +56,7 @@ Result<walk::WalkRequest> to_request(WalkArguments& a) {
     config::Configuration& c = *read;
     c.values.strict = c.values.strict || a.request.strict;
     c.values.control = c.values.control || a.request.control;
+    c.values.fullscreen = c.values.fullscreen || a.request.fullscreen;
     if (auto ok = config::check(c); !ok) return ok.error();
     walk::WalkRequest r = a.request;
     walk::apply_settings(c, r);
@@ -125,6 +126,8 @@ int run_walk_command(WalkArguments& a, const Context& context) {
     if (outcome->stopped)
         notify(
             fmt::format("The walk was stopped by the user after {} frames. The figures cover these.", outcome->summary.frames));
+    if (outcome->left)
+        notify(fmt::format("The visitor left by the window after {} frames. The figures cover these.", outcome->summary.frames));
     const bool broken = report::rule_broken(outcome->summary.control);
     if (broken) notify("The deadline rule is broken. See the control's figures.");
     return outcome->failures.empty() && !outcome->stopped && !broken ? exit_success : exit_failure;
@@ -138,11 +141,13 @@ void add_sources(CLI::App* c, walk::WalkRequest& r) {
                   "its first pose is the start, poses at equal times are viewpoints, and the action `tour` follows it");
     c->add_option(
          "--input", r.input_file,
-         "Source of steering, instead of the path: `devices` or a recording. `devices` uses all devices, plugged now or later. "
-         "It needs the real clock, and ends with --seconds, --frames, or the path's length. "
+         "Source of steering, instead of the path: `devices`, `window` or a recording. `devices` uses all devices, plugged now "
+         "or later. It needs the real clock, and ends with --seconds, --frames, or the path's length. "
+         "`window` is the keyboard and mouse of --backend window, and ends with --seconds, --frames, or Escape. "
          "A recording is in hid-recorder's text format, and ends a second after its last report. "
          "Check it with `surefoot devices describe`. A file named devices is ./devices")
         ->check(names_something());
+    c->add_flag("--fullscreen", r.fullscreen, "With --backend window: fill the screen at first. F11 changes that");
     c->add_option(
         "--steering", r.steering_file,
         "TOML file with [motion], [safety], [[device]] and [[gpio]] for --input (else the default of the device's class)");
@@ -207,9 +212,16 @@ void add_walk(CLI::App& app, Context& context) {
         "surefoot walk town.walk --seconds 30 --report report\n"
         "  surefoot walk town.walk --input devices --seconds 600             (a gamepad or 3D mouse steers)\n"
         "  surefoot walk town.walk --input pad.hid --steering pad.toml       (a recorded visitor steers)\n"
+        "  surefoot walk town.walk --backend window                          (keyboard and mouse steer, see below)\n"
         "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
         "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
         "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)\n\n"
+        "In a window, W A S D or the arrow keys walk, and Shift runs. E and Q or Page Up and Down fly up and down.\n"
+        "Drag with the left mouse button to look around, or press the right one to capture the pointer. T follows the\n"
+        "path, N goes to the next viewpoint, Home back to the start, and P pauses. F11 fills the screen. Escape releases\n"
+        "a captured pointer, else it ends the walk with all figures and exit code 0, as closing the window does.\n"
+        "Without --input the path is followed until a key or the mouse steers. The walk then lasts until Escape.\n"
+        "With --input devices both steer.\n\n"
         "In --json, `coarse_frames` counts frames with coarser slices. `floor_frames` counts frames where over half of the\n"
         "picture fell to the coarsest forms, although the forms of the frame before would have been drawn in time.\n"
         "Where the eye stands still, full detail is drawn over several frames, then smoothed by 64 samples. In --json,\n"
@@ -233,6 +245,7 @@ void add_walk(CLI::App& app, Context& context) {
                   {"--step-height", "step_height_m"},
                   {"--max-slope", "max_slope_deg"},
                   {"--edge", "edge_m"},
+                  {"--pointer-turn", "pointer_turn_deg"},
                   {"--filter", "filter"},
                   {"--rest-after", "rest_after_ms"},
                   {"--reserve", "reserve"},

@@ -138,6 +138,14 @@ void add_shown(const ShownSummary& s, Json& json) {
     json["one_percent_low_hz"] = several ? Json(rounded(s.one_percent_low_hz)) : Json(nullptr);
 }
 
+/// Null where the display reports nothing.
+Json display_of(const DisplaySummary& d) {
+    if (d.pictures == 0) return nullptr;
+    return {{"pictures", d.pictures},
+            {"replaced", d.replaced},
+            {"after_ms", {{"p50", rounded(d.after_ms.p50)}, {"p99", rounded(d.after_ms.p99)}, {"max", rounded(d.after_ms.max)}}}};
+}
+
 Json guarantee_of(const GuaranteeSummary& g) {
     Json broken = Json::object();
     for (const auto& [reason, frames] : g.broken) broken[reason] = frames;
@@ -208,6 +216,7 @@ std::string to_json(const WalkSummary& s) {
         {"picture", picture_of(s.picture)},
     };
     add_shown(s.shown, json);
+    json["display"] = display_of(s.display);
     if (s.guarantee.accuracy > 0) json["guarantee"] = guarantee_of(s.guarantee);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

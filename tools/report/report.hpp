@@ -125,6 +125,13 @@ struct ShownSummary {
     double one_percent_low_hz = 0;  ///< 1 / p99 of interval_ms
 };
 
+/// What the display itself reported of pictures, apart from the records, which are written before it does (X Present).
+struct DisplaySummary {
+    std::uint64_t pictures = 0;  ///< that it showed; 0: it reports nothing, and no figure holds
+    std::uint64_t replaced = 0;  ///< by a newer one, before they were shown
+    Quantiles after_ms;          ///< from a picture's hand-over until it was shown; of the newest 65 536
+};
+
 /// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
@@ -165,6 +172,7 @@ struct WalkSummary {
     std::vector<rt::Lack> degraded;      ///< what is not real-time here, and how to grant it
     ControlSummary control;
     ShownSummary shown;
+    DisplaySummary display;
     InputSummary input;
     PictureSummary picture;
 };

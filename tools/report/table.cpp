@@ -35,6 +35,7 @@ void timing_rows(LabelledText& table, const WalkSummary& s) {
         row("interval, ms", s.shown.interval_ms, 2, fmt::format("picture to picture, by {}", rt::name_of(s.shown.by)));
         if (s.shown.on_grid) row("off grid, us", s.shown.error_us, 0, "shown against planned");
     }
+    if (s.display.pictures > 0) row("display, ms", s.display.after_ms, 2, "from hand-over until the display showed it");
     row("array age", s.prepared_age, 0, "frames");
     row("cost error, %",
         {s.cost_error.p50 * 100, s.cost_error.p90 * 100, s.cost_error.p99 * 100, s.cost_error.p999 * 100, s.cost_error.max * 100,

@@ -8,6 +8,7 @@
 
 #include "input/replay/replay_source.hpp"
 #include "rt/base/text.hpp"
+#include "tools/walk/settings_request.hpp"
 
 namespace surefoot::walk {
 
@@ -44,8 +45,11 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
                       request.max_slope_deg * std::numbers::pi / 180, request.edge_m};
     session->motion_ = steering.motion;
     session->motion_.frame_s = static_cast<double>(period_ns) * 1e-9;
-    if (request.input_file == live_input) {
-        auto live = LiveInput::open(request, steering, notes);
+    if (window_steers(request)) session->window_feed_ = std::make_shared<input::WindowFeed>();
+    if (is_steered_live(request)) {
+        session->begins_touring_ = request.input_file.empty();
+        if (request.input_file.empty()) session->source_name_ = window_input;
+        auto live = LiveInput::open(request, steering, session->window_feed_, notes);
         if (!live) return live.error();
         session->live_.emplace(std::move(*live));
         session->source_ = session->live_->take_source();
@@ -64,6 +68,7 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
 void InputSession::begin(const Path& path, const model::Ground& ground, std::int64_t start_ns, bool real_clock,
                          const rt::Placement& placement) {
     tour_controller_ = std::make_unique<TourController>(path);
+    if (begins_touring_) tour_controller_->begin_tour(start_ns);
     walking_ = std::make_unique<Walking>(ground, body_, mode_);
     stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *tour_controller_, *walking_, samples_, jump_poses_,
                                               live_ ? live_->keeper() : nullptr);

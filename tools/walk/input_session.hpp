@@ -47,6 +47,10 @@ public:
     /// stop, and tells once that a visitor was put out of something solid.
     void poll(const Progress& progress, std::vector<std::string>& notes);
     [[nodiscard]] bool live() const { return live_.has_value(); }
+    /// Where the window's keyboard and mouse are to be pushed to; null where they do not steer.
+    [[nodiscard]] const std::shared_ptr<input::WindowFeed>& window_feed() const { return window_feed_; }
+    /// As of the last step: nobody is led along the path. After begin().
+    [[nodiscard]] bool steered() const { return stepper_ && stepper_->shown_steered(); }
     /// Devices as of the last poll(); what stops the walker as of the last step.
     [[nodiscard]] rt::InputState now() const;
     /// Ends the input thread. Returns the error if the thread could not be placed.
@@ -60,6 +64,8 @@ private:
 
     std::string source_name_;
     std::optional<LiveInput> live_;
+    std::shared_ptr<input::WindowFeed> window_feed_;
+    bool begins_touring_ = false;  ///< the path is followed until a hand moves
     double duration_s_ = 0;
     std::int64_t period_ns_ = 0;
     input::MotionLimits motion_;

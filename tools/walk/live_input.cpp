@@ -31,7 +31,7 @@ Result<void> check_memory(const std::string& file, bool latched) {
 }  // namespace
 
 Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::SteeringFile& steering,
-                                  std::vector<std::string>& notes) {
+                                  std::shared_ptr<input::WindowFeed> window, std::vector<std::string>& notes) {
     LiveInput live;
     if (input::has_stop(steering)) {
         const std::string file = stop_file(state_directory(request.state_dir));
@@ -54,6 +54,9 @@ Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::Steer
     input::LiveOptions options;
     options.mappings = steering.devices;
     options.lines = steering.lines;
+    options.devices = request.input_file == live_input;
+    options.window = std::move(window);
+    options.window_deg_per_px = request.pointer_turn_deg;
     auto source = input::LiveSource::open(std::move(options));
     if (!source) return source.error();
     live.source_ = std::move(*source);

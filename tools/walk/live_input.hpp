@@ -21,8 +21,9 @@ class LiveInput {
 public:
     /// Starts to look for devices, and loads the stored stop if one is configured. Errors: no udev; a state folder in which
     /// the stop cannot be stored. `notes`: messages for the user.
+    /// `window`: of its keyboard and mouse, if they steer.
     static Result<LiveInput> open(const WalkRequest& request, const input::SteeringFile& steering,
-                                  std::vector<std::string>& notes);
+                                  std::shared_ptr<input::WindowFeed> window, std::vector<std::string>& notes);
 
     [[nodiscard]] bool stop_latched() const { return stop_latched_; }
     [[nodiscard]] int steering_now() const { return live_->steering_now(); }

@@ -62,9 +62,9 @@ Result<void> check_outputs(const WalkRequest& request) {
     const std::string costs = cost_table_file(state_directory(request.state_dir));
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const Output& out = outputs[i];
-        for (const std::string& in :
-             {request.model_file, request.path_file, request.input_file == live_input ? std::string() : request.input_file,
-              request.steering_file, request.config_file, beside, costs}) {
+        const bool recorded = request.input_file != live_input && request.input_file != window_input;
+        for (const std::string& in : {request.model_file, request.path_file, recorded ? request.input_file : std::string(),
+                                      request.steering_file, request.config_file, beside, costs}) {
             if (!in.empty() && same_file(out.file, in))
                 return Error{out.option + " " + out.file, "The output is a file that the walk reads", "Name another file",
                              ErrorKind::misuse};

@@ -104,6 +104,12 @@ rt::Placement input_placement(const PlacingPlan& plan) {
     return placement;
 }
 
+rt::Placement window_placement(const PlacingPlan& plan) {
+    rt::Placement placement = input_placement(plan);
+    placement.name = "sf-window";
+    return placement;
+}
+
 std::vector<rt::DeclaredThread> worker_rows(const PlacingPlan& plan) {
     if (plan.workers <= 1) return {};
     const rt::Placement worker = worker_placement(plan, 1);
@@ -143,6 +149,10 @@ std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_
     if (real_clock && plan.input) {
         const rt::Placement input = input_placement(plan);
         table.push_back({.name = input.name, .policy = input.policy, .priority = input.priority, .cpus = input.cpus});
+    }
+    if (real_clock && plan.window) {
+        const rt::Placement window = window_placement(plan);
+        table.push_back({.name = window.name, .policy = window.policy, .priority = window.priority, .cpus = window.cpus});
     }
     if (real_clock && plan.devices) {
         table.push_back({.name = input::devices_thread_name, .policy = rt::Policy::other, .cpus = plan.all});

@@ -20,6 +20,7 @@ struct PlacingPlan {
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
     bool input = false;                        ///< an input thread steers
     bool devices = false;                      ///< a thread finds devices (sf-devices)
+    bool window = false;                       ///< a thread reads a window's events (sf-window)
     std::vector<std::string> driver_prefixes;  ///< names of the driver's rasterisers begin so
     int rasterisers = 0;                       ///< number of rasterisers found
     int workers = 1;                           ///< of preparation, with the prepare thread
@@ -43,6 +44,8 @@ rt::Placement frame_placement(const PlacingPlan& plan);
 /// The place of the input thread. It has a priority between the frame thread and the rasterisers, so drawing cannot delay a
 /// report. It may use every core, so the frame thread cannot delay a report either.
 rt::Placement input_placement(const PlacingPlan& plan);
+/// The place of the thread that reads a window's events: that of the input thread, for the same reasons.
+rt::Placement window_placement(const PlacingPlan& plan);
 
 /// Number of threads of this process that have the program's own name now.
 int count_unnamed(const std::string& program_name);

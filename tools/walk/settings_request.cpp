@@ -45,9 +45,20 @@ Result<void> check_real_time(const WalkRequest& r) {
         return Error{"--control", "The control needs the real clock", "Remove --control or --clock virtual", ErrorKind::misuse};
     if (r.strict)
         return Error{"--strict", "This option needs the real clock", "Remove --strict or --clock virtual", ErrorKind::misuse};
-    if (r.input_file == live_input)
-        return Error{"--input devices", "Devices need the real clock",
+    if (r.input_file == live_input || r.input_file == window_input)
+        return Error{"--input " + r.input_file, "Devices and windows need the real clock",
                      "Remove --clock virtual, or give a recording (`surefoot devices record`)", ErrorKind::misuse};
+    return {};
+}
+
+/// A window's keyboard needs a window; and what fills the screen too.
+Result<void> check_window(const WalkRequest& r, gl::BackendKind backend) {
+    if (backend == gl::BackendKind::window) return {};
+    const std::string remedy = fmt::format("Add --backend {}", gl::window_backend);
+    if (r.input_file == window_input)
+        return Error{fmt::format("--input {}", window_input),
+                     "This input is a window's keyboard and mouse, and there is no window", remedy, ErrorKind::misuse};
+    if (r.fullscreen) return Error{"--fullscreen", "There is no window to fill the screen", remedy, ErrorKind::misuse};
     return {};
 }
 
@@ -64,7 +75,8 @@ const config::Schema& settings_schema() {
 void apply_settings(const config::Configuration& configuration, WalkRequest& request) {
     config::Settings settings = configuration.values;
     for (const auto& [key, member, word] : files) {
-        settings.*member = config::file_setting(configuration, key, word);
+        const bool is_window = member == &config::Settings::input_file && configuration.values.input_file == window_input;
+        settings.*member = config::file_setting(configuration, key, is_window ? window_input : word);
         if (!(request.*member).empty()) settings.*member = request.*member;
     }
     static_cast<config::Settings&>(request) = std::move(settings);
@@ -80,18 +92,25 @@ Result<void> check_request(const WalkRequest& r) {
                      "Remove --input", ErrorKind::misuse};
     const auto backend = gl::backend_named(r.backend);
     if (!backend) return backend.error();
+    if (auto ok = check_window(r, (*backend)->kind); !ok) return ok;
     if (r.cost_noise > 0 && (r.clock == rt::ClockKind::real || (*backend)->draws()))
         return Error{"--cost-noise", "Only simulated costs can have noise, and these costs are real",
                      "Add --clock virtual --backend null", ErrorKind::misuse};
     if (const auto selector = select::selector_named(r.selector); selector)
         if (auto ok = select::can_guarantee(**selector, r.min_accuracy); !ok) return ok;
-    if (!r.steering_file.empty() && r.input_file.empty())
+    if (!r.steering_file.empty() && r.input_file.empty() && !window_steers(r))
         return Error{"--steering", "A steering file needs a device, and this walk follows its path",
                      "Add --input devices, or --input REC with a recording of a device", ErrorKind::misuse};
-    if (r.clear_stop && r.input_file != live_input)
+    if (r.clear_stop && !is_steered_live(r))
         return Error{"--clear-stop", "This option needs devices, and none steers this walk", "Add --input devices",
                      ErrorKind::misuse};
     return r.endless ? check_endless(r) : Result<void>{};
+}
+
+bool window_steers(const WalkRequest& r) {
+    const auto backend = gl::backend_named(r.backend);
+    if (!backend || (*backend)->kind != gl::BackendKind::window || r.clock != rt::ClockKind::real || r.control) return false;
+    return r.input_file.empty() || r.input_file == window_input || r.input_file == live_input;
 }
 
 void prepare_process(const WalkRequest& first) { gl::prepare_process(first.rasterisers); }

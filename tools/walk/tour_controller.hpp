@@ -24,6 +24,11 @@ public:
     explicit TourController(const Path& path);
 
     [[nodiscard]] const Pose& start() const { return viewpoints_.front(); }
+    /// Tours from the start, from `start_ns` on, until the hand moves. Before the first step.
+    void begin_tour(std::int64_t start_ns) {
+        touring_ = true;
+        last_ns_ = start_ns;
+    }
     /// Call it after every tick of `steering`, on its thread. Moves the eye where a button demands it, and puts the result into
     /// `sample` for the frame thread. Edges are taken from the tick, so none is lost and none is taken twice.
     void follow(input::NavigationSample& sample, input::Steering& steering, std::int64_t now_ns) REQUIRES(steering.steers);

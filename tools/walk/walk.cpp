@@ -88,6 +88,9 @@ rt::FrameLoopOptions loop_options(Session& s, const Progress& progress) {
     o.control = s.request.control ? &s.control : nullptr;
     o.stop = progress.stop;
     o.failed = &s.lost;
+    if (s.window) o.left = &s.window->left();
+    if (s.may_be_prolonged) o.prolonged = &s.prolonged;
+    o.prolonged_frames = max_frames;
     o.continued = s.virtual_clock ? nullptr : rt::count_continues();
     o.rasterisers = s.rasterisers;
     o.rasterisers_on_core = s.on_frame_core;
@@ -122,6 +125,7 @@ void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, cons
         if (s.input) s.input->poll(progress, s.notes);
         notify_screen(s, progress);
         notify_input(s);
+        if (s.may_be_prolonged && s.input->steered()) s.prolonged.store(true, std::memory_order_relaxed);
         notify_missed_frame(s);
         const double ran =
             s.virtual_clock ? 0.5 : static_cast<double>(clock.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
@@ -175,6 +179,7 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
         if (!s.virtual_clock) rt::prefault_heap();
         WalkStagesOptions of_stages = stages_options(s);
         of_stages.stop = progress.stop;
+        if (s.window) of_stages.left = &s.window->left();
         of_stages.clip = clip;
         WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, snapshots, s.kept, of_stages);
         s.engine->device().bind();
@@ -225,6 +230,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
         s.rasterisers = *placed;
     }
     warm_up(s);
+    open_window_thread(s);
     s.plan.unnamed = count_unnamed(program_invocation_short_name);
 
     WalkOutcome outcome;
@@ -255,12 +261,15 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     s.facts.dropped_records = ring.dropped();
     outcome.records = recorder.take_records();
     record_loss(s, outcome);
-    outcome.stopped = progress.stopped() && (request.endless || seen < s.frames);
+    if (s.window) s.window->stop();
+    outcome.left = s.window && s.window->left().load();
+    outcome.stopped = progress.stopped() && !outcome.left && (request.endless || s.prolonged.load() || seen < s.frames);
     if (s.input) outcome.summary.input = s.input->summary(outcome.records);
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
-    if (request.control && !outcome.stopped && !s.lost)
+    if (s.window) outcome.summary.display = s.window->displayed();
+    if (request.control && !outcome.stopped && !outcome.left && !s.lost)
         judge_control(s.plan, s.grid.period_ns, s.burn_ns, blocks, outcome, progress);
-    if (seen == 0 && outcome.stopped) {  // nothing to show: what an earlier walk left stays
+    if (seen == 0 && (outcome.stopped || outcome.left)) {  // nothing to show: what an earlier walk left stays
         outcome.notes.emplace_back("stopped before the first frame: nothing is written");
         return outcome;
     }

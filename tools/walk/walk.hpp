@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "config/settings.hpp"
+#include "render/gl/backends.hpp"
 #include "render/select/select.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
@@ -32,14 +33,19 @@ namespace surefoot::walk {
 
 /// The input that means all connected devices. A recording of that name is "./devices".
 constexpr std::string_view live_input = "devices";
+/// The input that means keyboard and mouse of the window. A recording of that name has a "./" in front too.
+constexpr std::string_view window_input = gl::window_backend;
 
 /// The request for one walk: the settings, with file names that can be opened, and what no settings file has. 0 or empty means
 /// the default in the comment.
 struct WalkRequest : config::Settings {
-    WalkRequest();             ///< the schema's defaults
-    std::string config_file;   ///< where settings came from: not to be written over; may be empty
-    bool clear_stop = false;   ///< live: release a stop that an earlier walk left latched
-    std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long
+    WalkRequest();            ///< the schema's defaults
+    std::string config_file;  ///< where settings came from: not to be written over; may be empty
+    bool may_leave = true;    ///< Escape in a window, and closing it, end the walk
+    bool clear_stop = false;  ///< live: release a stop that an earlier walk left latched
+    /// 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long. A visitor who steers by a
+    /// window walks on until he leaves.
+    std::uint64_t frames = 0;
     double seconds = 0;
     bool keep_records = true;  ///< false: records go only to the observer, and no outputs are made of them
     bool endless = false;      ///< until progress.stop: records go only to the observer and are not kept, so there are no outputs
@@ -66,6 +72,7 @@ struct WalkOutcome {
     std::vector<Error> failures;                   ///< outputs that could not be written; the others are complete
     std::vector<std::string> notes;                ///< messages for the user, one line each
     bool stopped = false;                          ///< ended before its last frame, by progress.stop
+    bool left = false;                             ///< ended by the visitor, by Escape in the window or by closing it
     bool lost = false;                             ///< ended because the graphics context was lost; failures has the error
     std::vector<report::PictureFigures> pictures;  ///< that were compared with full detail, in order
     std::string report_page;                       ///< the report's index.html, if requested

@@ -21,8 +21,6 @@ namespace surefoot::walk {
 
 namespace {
 
-constexpr std::uint64_t max_frames = 4'000'000;  // records of 0.4 KiB
-
 Result<void> read_request(Session& s) {
     auto period = rt::period_of_rate_ns(s.request.rate_hz);
     if (!period) return period.error();
@@ -36,9 +34,14 @@ Result<void> read_request(Session& s) {
     return check_request(s.request);
 }
 
+bool window_of(const WalkRequest& r) {
+    const auto backend = gl::backend_named(r.backend);
+    return backend && (*backend)->kind == gl::BackendKind::window;
+}
+
 /// Read first of all: a wrong steering file is found before a large model is opened.
 Result<void> open_input(Session& s) {
-    if (s.request.input_file.empty()) return {};
+    if (s.request.input_file.empty() && !window_steers(s.request)) return {};
     notify_step(s, WalkStep::input);
     auto input = InputSession::open(s.request, s.grid.period_ns, s.notes);
     if (!input) return input.error();
@@ -54,7 +57,8 @@ Result<void> claim(Session& s) {
     if (!plan) return plan.error();
     s.plan = *plan;
     s.plan.input = s.input != nullptr;
-    s.plan.devices = s.input && s.input->live();
+    s.plan.devices = s.input && r.input_file == live_input;
+    s.plan.window = window_of(r);
     notify_step(s, WalkStep::input);
     if (r.given_costs) {
         s.costs = *r.given_costs;
@@ -105,6 +109,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.device.second_filter = r.filter == rt::TextureFilter::adaptive;
     options.device.screen = {r.screen, r.mode, r.rotation_deg, {}};
     options.device.sky = config::colour_of(r.sky);
+    options.device.fullscreen = r.fullscreen;
     options.device.null.cost_scale = r.cost_scale;
     options.device.null.noise = r.cost_noise;
     options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);
@@ -256,6 +261,7 @@ model::CostModel with_overhead(model::CostModel costs, double factor) {
 }
 
 Session::~Session() {
+    window.reset();
     if (engine) {
         {
             const ScopedWorkerPriority at_worker_priority(plan);
@@ -281,7 +287,21 @@ Result<void> open_session(Session& s, const Progress& progress) {
     auto frames = frames_wanted(s);
     if (!frames) return frames.error();
     s.frames = *frames;
+    const WalkRequest& r = s.request;
+    s.may_be_prolonged = window_steers(r) && r.input_file != live_input && r.frames == 0 && r.seconds == 0 && !r.endless;
+    s.prolonged.store(s.may_be_prolonged && r.input_file == window_input);
     return {};
+}
+
+void open_window_thread(Session& s) {
+    auto window = s.engine->device().window();
+    if (!window) return;
+    const WindowThreadOptions options{s.input ? s.input->window_feed() : nullptr, s.request.may_leave};
+    rt::Placement placement = window_placement(s.plan);
+    if (s.virtual_clock) placement = {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = placement.name};
+    s.window = std::make_unique<WindowThread>(std::move(window), options, placement);
+    if (const auto& refused = s.window->misplaced())
+        s.facts.degraded.push_back({rt::LackKind::placing, refused->what, refused->remedy});
 }
 
 namespace {

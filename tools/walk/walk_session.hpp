@@ -22,6 +22,7 @@
 #include "tools/walk/walk.hpp"
 #include "tools/walk/walk_results.hpp"
 #include "tools/walk/walk_stages.hpp"
+#include "tools/walk/window_thread.hpp"
 #include "tools/walk/worker_places.hpp"
 
 namespace surefoot::walk {
@@ -29,6 +30,8 @@ namespace surefoot::walk {
 /// The costs with Maciel's overhead factor on all that they predict (Maciel 1994, sections 3.3.1 and 4). A user sets it by hand,
 /// for overheads that the table cannot know.
 model::CostModel with_overhead(model::CostModel costs, double factor);
+
+constexpr std::uint64_t max_frames = 4'000'000;  ///< of a walk that keeps records: 0.4 KiB each
 
 /// What the parts of a session share while it runs.
 struct Session {
@@ -46,6 +49,9 @@ struct Session {
     rt::Grid grid;
     std::optional<rt::DisplayClock> display;  ///< where a display tells when it shows pictures
     std::uint64_t frames = 0;                 ///< 0: until stopped
+    bool may_be_prolonged = false;            ///< beyond `frames`, until the visitor leaves
+    std::atomic<bool> prolonged{false};       ///< somebody steers by the window: `frames` is no end any more
+    std::unique_ptr<WindowThread> window;     ///< null without a window
     std::vector<pid_t> rasterisers;
     std::vector<pid_t> on_frame_core;  ///< those of them that share the frame thread's core
     KeptFrame kept;
@@ -68,6 +74,8 @@ void notify_step(const Session& s, WalkStep step);
 /// Opens all that a walk needs but its threads: request, input, real time, costs, model, path, device. Fails with the first thing
 /// that is wrong, named; what was opened until then goes with the session.
 Result<void> open_session(Session& s, const Progress& progress);
+/// Starts to read the window's events, where there is one. From a neutral thread.
+void open_window_thread(Session& s);
 /// A few frames along the path, so that programs, buffers and caches are warm and memory is touched.
 void warm_up(Session& s);
 

@@ -115,7 +115,10 @@ void WalkStages::rehearse(std::int64_t until_ns) {
     std::int64_t due_ns = clock_.now_ns();
     for (int i = 0; i < rehearsed_frames && due_ns < until_ns - 2 * options_.period_ns; ++i) {
         clock_.sleep_until_ns(due_ns);
-        if ((options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) || device.lost()) break;
+        const auto is_set = [](const std::atomic<bool>* flag) {
+            return flag != nullptr && flag->load(std::memory_order_relaxed);
+        };
+        if (is_set(options_.stop) || is_set(options_.left) || device.lost()) break;
         prepared_.refresh();
         const prepare::PreparedFrame& set = prepared_.front();
         limit_.count(set);

@@ -56,6 +56,7 @@ struct WalkStagesOptions {
     const TestDisplay* display = nullptr;     ///< takes the pictures, for tests; null: the device does
     bool follows_display = false;             ///< the grid is held to the device's display
     const std::atomic<bool>* stop = nullptr;  ///< ends the rehearsal; may be null
+    const std::atomic<bool>* left = nullptr;  ///< the same
     RegionClip* clip = nullptr;               ///< where frames are prepared inline; null where nobody walks
     std::atomic<bool>* lost = nullptr;        ///< set when the graphics device is lost; may be null
 };

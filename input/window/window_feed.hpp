@@ -1,0 +1,40 @@
+// Hands a window's reports from the thread that reads its events to the thread that steers.
+#pragma once
+
+#include <poll.h>
+
+#include <cstdint>
+
+#include "input/window/window_reports.hpp"
+#include "rt/base/thread_annotations.hpp"
+#include "rt/exchange/spsc_ring.hpp"
+
+namespace surefoot::input {
+
+/// One thread pushes, one takes. Neither waits, allocates or locks. Where the taker is too slow, reports are summed up: keys are
+/// as they are now, and no pixel is lost.
+class WindowFeed {
+public:
+    WindowFeed();
+    ~WindowFeed();
+    WindowFeed(const WindowFeed&) = delete;
+    WindowFeed& operator=(const WindowFeed&) = delete;
+
+    /// Pushing thread.
+    void push(const WindowReport& report);
+    /// Pushing thread: tries again what found no room. False: it still finds none.
+    bool flush();
+    /// Taking thread. False: none waits.
+    bool take(WindowReport& report);
+    /// Readable when reports may wait.
+    [[nodiscard]] pollfd polled() const { return {event_fd_, POLLIN, 0}; }
+
+private:
+    [[no_unique_address]] ThreadRole pushes_;
+    rt::SpscRing<WindowReport> ring_{1024};
+    WindowReport waiting_ GUARDED_BY(pushes_);
+    bool waits_ GUARDED_BY(pushes_) = false;
+    int event_fd_;  ///< -1: none could be had; then the taker's own rhythm serves
+};
+
+}  // namespace surefoot::input

@@ -1,0 +1,188 @@
+// A walk in a window on a real X server (Xvfb), with a visitor who presses real keys: they lead the eye off the path, show in
+// pictures, are released with the focus, and end the walk. Skipped with the reason where there is no such server.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+#include <vector>
+
+#include "rt/clock/clock.hpp"
+#include "rt/threads/guard.hpp"
+#include "tests/gl/x_server.hpp"
+#include "tests/walk/steered_fixture.hpp"
+#include "tools/walk/window_thread.hpp"
+
+namespace surefoot {
+namespace {
+
+using test::wait_ms;
+
+constexpr unsigned long symbol_escape = 0xff1b, symbol_f11 = 0xffc8;
+
+/// What the visitor did, and when.
+struct Times {
+    std::int64_t pressed_ns = 0, lifted_ns = 0, dragged_ns = 0, turned_ns = 0, lost_ns = 0, rested_ns = 0, left_ns = 0;
+};
+
+/// Records of frames that were due from one time until another.
+std::vector<rt::FrameRecord> between(const walk::WalkOutcome& outcome, std::int64_t from_ns, std::int64_t until_ns) {
+    std::vector<rt::FrameRecord> out;
+    for (const rt::FrameRecord& r : outcome.records)
+        if (r.due_ns >= from_ns && r.due_ns < until_ns) out.push_back(r);
+    return out;
+}
+
+double walked_m(const std::vector<rt::FrameRecord>& frames) {
+    return frames.empty() ? 0 : glm::length(test::eye(frames.back()) - test::eye(frames.front()));
+}
+
+double turned_rad(const rt::FrameRecord& a, const rt::FrameRecord& b) {
+    return 2 * std::acos(std::min(1.0, std::abs(glm::dot(test::orientation(a), test::orientation(b)))));
+}
+
+std::size_t different(const test::ScreenPicture& a, const test::ScreenPicture& b) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < std::min(a.pixels.size(), b.pixels.size()); ++i) count += a.pixels[i] == b.pixels[i] ? 0 : 1;
+    return count;
+}
+
+struct Pictures {
+    test::ScreenPicture before, after, filled;
+};
+
+/// Presses W for 0.4 s, drags by 100 pixels, loses the focus with D held, fills the screen, and leaves.
+void steer(test::XVisitor& visitor, Times& times, Pictures& pictures) {
+    const rt::RealClock clock;
+    const auto window = visitor.find_window();
+    visitor.move_to(60, 60);
+    wait_ms(100);
+    pictures.before = visitor.look_at_screen();
+    times.pressed_ns = clock.now_ns();
+    visitor.key('w', true);
+    wait_ms(400);
+    visitor.key('w', false);
+    times.lifted_ns = clock.now_ns();
+    wait_ms(350);
+    pictures.after = visitor.look_at_screen();
+    times.dragged_ns = clock.now_ns();
+    visitor.button(1, true);
+    for (int x = 60; x <= 160; x += 20) {
+        visitor.move_to(x, 60);
+        wait_ms(10);
+    }
+    visitor.button(1, false);
+    wait_ms(250);
+    visitor.key('d', true);
+    wait_ms(200);
+    times.turned_ns = clock.now_ns();
+    visitor.take_focus();
+    times.lost_ns = clock.now_ns();
+    wait_ms(400);
+    times.rested_ns = clock.now_ns();
+    visitor.key('d', false);
+    visitor.give_focus(window);
+    wait_ms(30);
+    visitor.tap(symbol_f11);
+    wait_ms(120);
+    pictures.filled = visitor.look_at_screen();
+    visitor.button(3, true);
+    visitor.button(3, false);
+    wait_ms(30);
+    visitor.tap(symbol_escape);  // releases the pointer
+    wait_ms(60);
+    times.left_ns = clock.now_ns();
+    visitor.tap(symbol_escape);
+}
+
+TEST(WindowWalk, KeysAndMouseLeadOffThePathAndEscapeEndsTheWalk) {
+#ifdef SUREFOOT_WATCHES_THREADS
+    GTEST_SKIP() << "drivers cannot be opened under the thread sanitizer";
+#endif
+    auto server = test::XServer::start("320x240x24");
+    if (!server) GTEST_SKIP() << server.error().text();
+    auto visitor = test::XVisitor::come();
+    if (!visitor) GTEST_SKIP() << visitor.error().text();
+    walk::WalkRequest request = test::Forest::get().virtual_request(0);
+    request.clock = rt::ClockKind::real;
+    request.backend = walk::window_input;
+    request.width = 200;
+    request.height = 150;
+    request.rate_hz = 60;
+    request.walking = rt::WalkingMode::fly;
+    request.rest_after_ms = 0;
+    Times times;
+    Pictures pictures;
+    std::atomic<std::int64_t> first_ns{0};
+    std::thread hand([&] {  // there before the walk, which counts the threads that are its own
+        first_ns.wait(0);
+        rt::RealClock clock;
+        clock.sleep_until_ns(first_ns.load());
+        if (first_ns.load() > 1) steer(**visitor, times, pictures);
+    });
+    walk::WalkObserver observer;
+    observer.on_started = [&](const walk::WalkStart& start) {
+        first_ns.store(start.t0_ns);
+        first_ns.notify_one();
+    };
+    const auto outcome = walk::run_walk(request, {}, observer);
+    if (first_ns.load() == 0) first_ns.store(1);  // it never began
+    first_ns.notify_one();
+    hand.join();
+    ASSERT_TRUE(outcome.ok()) << outcome.error().text();
+    ASSERT_FALSE(outcome->records.empty());
+    EXPECT_TRUE(outcome->left);
+    EXPECT_FALSE(outcome->stopped);
+    EXPECT_EQ(outcome->summary.frames, outcome->records.size()) << "the summary is of all frames";
+    const std::int64_t last_ns = outcome->records.back().due_ns;
+    EXPECT_GT(last_ns, times.left_ns - 100'000'000) << "the first Escape only releases the pointer";
+    EXPECT_LT(last_ns, times.left_ns + 200'000'000);
+
+    const auto on_path = between(*outcome, 0, times.pressed_ns);
+    ASSERT_GT(on_path.size(), 2U);
+    EXPECT_GT(walked_m(on_path), 0.01) << "the path is followed until a key steers";
+    const auto pressed = between(*outcome, times.pressed_ns + 50'000'000, times.lifted_ns);
+    EXPECT_GT(walked_m(pressed), 0.15) << "W walks";
+    const auto lifted = between(*outcome, times.lifted_ns + 300'000'000, times.dragged_ns);
+    EXPECT_LT(walked_m(lifted), 1e-3) << "and its release rests: the path has ended";
+    EXPECT_GT(different(pictures.before, pictures.after), 100U) << "of 30000 pixels";
+    const auto dragged = between(*outcome, times.dragged_ns, times.turned_ns);
+    ASSERT_GT(dragged.size(), 10U);
+    EXPECT_NEAR(turned_rad(dragged.front(), dragged.back()), 100 * request.pointer_turn_deg * 3.14159265 / 180, 2e-3);
+    EXPECT_GT(walked_m(dragged), 0.02) << "D walks aside";
+    const auto rested = between(*outcome, times.lost_ns + 300'000'000, times.rested_ns);
+    ASSERT_GT(rested.size(), 2U);
+    EXPECT_LT(walked_m(rested), 1e-3) << "nobody walks on with a key that is held elsewhere";
+    std::size_t black = 0;  // 320x240 has the picture's shape
+    for (const test::ScreenPixel& p : pictures.filled.pixels) black += p == test::ScreenPixel{} ? 1 : 0;
+    EXPECT_LT(black, pictures.filled.pixels.size() / 100) << "the window fills the screen";
+
+    const report::InputSummary& in = outcome->summary.input;
+    ASSERT_EQ(in.devices.size(), 1U);
+    EXPECT_EQ(in.devices[0].mapping, "default: keyboard and mouse");
+    EXPECT_GE(in.reports, 8U);
+    EXPECT_EQ(outcome->summary.guard_violations, 0U);
+    EXPECT_EQ(in.guard_violations, 0U);
+    if (!rt::guard_active()) std::printf("allocations are not counted in this build\n");
+    EXPECT_TRUE(outcome->summary.census_problems.empty()) << outcome->summary.census_problems.front();
+}
+
+TEST(WindowThread, ClosingTheWindowLeavesUnlessNobodyMay) {
+    auto server = test::XServer::start("320x240x24");
+    if (!server) GTEST_SKIP() << server.error().text();
+    auto visitor = test::XVisitor::come();
+    if (!visitor) GTEST_SKIP() << visitor.error().text();
+    for (const bool may_leave : {true, false}) {
+        auto window = gl::WindowEvents::open({64, 64}, "test", false);
+        ASSERT_TRUE(window.ok()) << window.error().text();
+        walk::WindowThread thread(*window, {nullptr, may_leave},
+                                  {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-window"});
+        (*visitor)->close((*window)->id());
+        for (int i = 0; i < 100 && !thread.left().load() && (may_leave || i < 10); ++i) wait_ms(10);
+        EXPECT_EQ(thread.left().load(), may_leave);
+    }
+}
+
+}  // namespace
+}  // namespace surefoot

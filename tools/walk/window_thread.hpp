@@ -1,0 +1,61 @@
+// The thread that reads a window's events: hands its keys and pointer to the input thread, and does what the visitor orders of
+// the window. Nobody waits for it, and it waits for the X server alone.
+#pragma once
+
+#include <atomic>
+#include <latch>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "input/window/window_feed.hpp"
+#include "render/gl/window_events.hpp"
+#include "rt/base/result.hpp"
+#include "rt/threads/placement.hpp"
+#include "tools/report/report.hpp"
+
+namespace surefoot::walk {
+
+/// Settings of the thread.
+struct WindowThreadOptions {
+    std::shared_ptr<input::WindowFeed> feed;  ///< null: keys and pointer do not steer
+    bool may_leave = true;                    ///< false: neither Escape nor closing ends the walk
+};
+
+/// Runs from the constructor to stop().
+class WindowThread {
+public:
+    /// Start it from a neutral thread. When this returns, the thread has applied `placement`.
+    WindowThread(std::shared_ptr<gl::WindowEvents> window, WindowThreadOptions options, rt::Placement placement);
+    ~WindowThread();
+    WindowThread(const WindowThread&) = delete;
+    WindowThread& operator=(const WindowThread&) = delete;
+
+    void stop();
+    /// After stop(): what the display reported of the pictures.
+    [[nodiscard]] report::DisplaySummary displayed() const;
+    /// Set once the visitor has closed the window or pressed Escape. For any thread.
+    [[nodiscard]] const std::atomic<bool>& left() const { return left_; }
+    /// The error if it could not be placed.
+    [[nodiscard]] const std::optional<Error>& misplaced() const { return misplaced_; }
+
+private:
+    void run();
+    void take_events(input::WindowReports& reports);
+    void take_shown();
+    void obey(input::WindowCommand command, input::WindowReports& reports);
+
+    std::shared_ptr<gl::WindowEvents> window_;
+    WindowThreadOptions options_;
+    rt::Placement placement_;
+    std::optional<Error> misplaced_;  ///< written before placed_
+    std::latch placed_{1};
+    std::atomic<bool> left_{false}, stopping_{false};
+    int wake_fd_;
+    std::vector<double> shown_ms_;  ///< from hand-over to the display, of the newest pictures
+    std::uint64_t shown_ = 0, replaced_ = 0;
+    std::thread thread_;
+};
+
+}  // namespace surefoot::walk
