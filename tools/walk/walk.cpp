@@ -137,7 +137,7 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     s.on_frame_core = on_frame_core(s.plan, s.rasterisers);
     const rt::FrameLoopOptions options = loop_options(s, progress);
 
-    PathPoses path_poses(s.path.path, s.grid.period_ns);
+    PathPoses path_poses(s.path.path, s.grid.period_ns, s.engine->options().device.viewport);
     if (s.input) s.input->begin(s.path.path, s.engine->model().ground, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
     std::unique_ptr<PrepareThread> preparing;
     JumpBuffer* jump_poses = s.input ? s.input->jump_poses() : nullptr;

@@ -294,7 +294,7 @@ void warm_up(Session& s) {
     engine.device().release();
     // Ready for the first frame: a complete set for where the path begins, at a resolution that was compared with all others.
     const double period_s = period_us * 1e-6;
-    const FramePose first = PathPoses(s.path.path, s.grid.period_ns).sample({});
+    const FramePose first = PathPoses(s.path.path, s.grid.period_ns, engine.options().device.viewport).sample({});
     prepare::Region region = predict_region(first.before, first.pose, period_s, horizon_s(period_s));
     region.radius_m = std::max(region.radius_m, 0.5);
     region.angle_rad = std::max(region.angle_rad, 0.2);
