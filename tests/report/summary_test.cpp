@@ -190,6 +190,8 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                                    "calibrated",
                                    "input",
                                    "picture",
+                                   "seat",
+                                   "acuity_arcmin",
                                    "unused_ms",
                                    "coarse_frames",
                                    "floor_frames",

@@ -151,6 +151,15 @@ Json guarantee_of(const GuaranteeSummary& g) {
             {"binding_name", binds ? Json(g.binding_name) : Json(nullptr)}};
 }
 
+/// Null where no seat is given.
+Json seat_of(const SeatSummary& s) {
+    if (!s.given) return nullptr;
+    return {{"screen_width_cm", rounded(s.screen_width_cm)},
+            {"eye_distance_cm", rounded(s.eye_distance_cm)},
+            {"fov_x_deg", rounded(s.fov_x_deg)},
+            {"fov_y_deg", rounded(s.fov_y_deg)}};
+}
+
 }  // namespace
 
 std::string to_json(const WalkSummary& s) {
@@ -206,6 +215,8 @@ std::string to_json(const WalkSummary& s) {
         {"control", control_of(s.control)},
         {"input", input_of(s.input)},
         {"picture", picture_of(s.picture)},
+        {"seat", seat_of(s.seat)},
+        {"acuity_arcmin", s.acuity_arcmin > 0 ? Json(rounded(s.acuity_arcmin)) : Json(nullptr)},
     };
     add_shown(s.shown, json);
     if (s.guarantee.accuracy > 0) json["guarantee"] = guarantee_of(s.guarantee);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/seat.hpp"
 #include "render/gl/backends.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
@@ -85,6 +86,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);
     options.prepare.occlusion = r.occlusion;
     options.prepare.gestalt = r.gestalt;
+    options.prepare.acuity_rad = config::acuity_rad(r);
     options.selector = r.selector;
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);
@@ -93,6 +95,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     const bool may_choose = r.accuracy == 0 && r.selector == select::usual_selector;
     options.resolution = r.resolution_pct == 0 && !may_choose ? 1.0F : static_cast<float>(r.resolution_pct * 0.01);
     options.max_error_rad = r.min_accuracy > 0 ? 1.0 / r.min_accuracy : 0;
+    if (options.max_error_rad > 0) options.prepare.acuity_rad = std::min(options.prepare.acuity_rad, options.max_error_rad);
     options.in_frame_check = r.in_frame_check;
     options.benefit = r.benefit;
     options.rest_after_ms = r.rest_after_ms;
@@ -146,6 +149,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
         if (!path) return path.error();
         s.path = std::move(*path);
     }
+    sit(r, s.path.path);
 
     if (s.input && r.walking != rt::WalkingMode::fly) {
         if (model->ground.empty())
