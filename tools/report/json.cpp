@@ -172,6 +172,7 @@ std::string to_json(const WalkSummary& s) {
         {"misses", s.misses},
         {"own_misses", s.own_misses},
         {"miss_causes", causes},
+        {"core_steal_misses", s.core_steal_known ? Json(s.core_steal_misses) : Json(nullptr)},
         {"frame_ms", tail(s.frame_ms)},
         {"wake_us", tail(s.wake_us)},
         {"select_us", tail(s.select_us)},

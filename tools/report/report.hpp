@@ -143,6 +143,8 @@ struct WalkSummary {
     double rate_hz = 0, seconds = 0;
     std::uint64_t frames = 0, slots = 0, skipped = 0, misses = 0, own_misses = 0;
     std::map<std::string, std::uint64_t> miss_causes;
+    bool core_steal_known = false;        ///< the kernel told the steal of the frame's cores
+    std::uint64_t core_steal_misses = 0;  ///< that looked like work, and are `stolen` by the steal of the frame's cores
     Quantiles frame_ms, wake_us, select_us, prepare_cpu_us, prepared_age, cost_error, submit_ms, raster_ms, visits, hidden;
     double cost_scale = 1;  ///< the setting
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;

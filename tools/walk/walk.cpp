@@ -102,15 +102,27 @@ void notify_missed_frame(Session& s) {
     s.kept.kept.store(false, std::memory_order_release);
 }
 
+/// The kernel's steal of each core as it is now, beside what the frames' own clocks see.
+void read_core_steal(Session& s) {
+    const auto steal = rt::read_steal();
+    s.steal->read(rt::monotonic_ns(), steal ? std::span<const double>(steal->cpu_ms) : std::span<const double>());
+}
+
 /// While the frame thread walks: serves the input, reports progress, and counts the threads once all have started.
 void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, const Progress& progress) {
     bool counted = s.virtual_clock;
+    constexpr std::int64_t steal_every_ns = 95'000'000;  // so long do frames share a reading
+    std::int64_t steal_read_ns = 0;
     const int look_ms = s.virtual_clock ? 5 : s.input && s.input->live() ? 10 : 100;
     while (!done.load()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
         if (s.input) s.input->poll(progress, s.notes);
         notify_input(s);
         notify_missed_frame(s);
+        if (s.steal && rt::monotonic_ns() - steal_read_ns >= steal_every_ns) {
+            steal_read_ns = rt::monotonic_ns();
+            read_core_steal(s);
+        }
         const double ran =
             s.virtual_clock ? 0.5 : static_cast<double>(clock.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
         progress.update("walk", share_done(s, ran));
@@ -230,6 +242,13 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
         if (!request.endless) blocks.on_record(record);
         if (observer.on_record) observer.on_record(record);
     };
+    if (!s.virtual_clock) {
+        s.steal.emplace(s.rasterisers.empty() ? rt::CpuMask{s.plan.frame_core} : s.plan.all);
+        recorder_options.on_batch = [&](std::span<rt::FrameRecord> records) {
+            read_core_steal(s);
+            s.steal->judge(records);
+        };
+    }
     rt::Recorder recorder(ring, recorder_options);
 
     const double steal_before = total_steal_ms();

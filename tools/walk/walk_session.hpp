@@ -13,6 +13,7 @@
 #include "rt/exchange/triple_buffer.hpp"
 #include "rt/frame/control.hpp"
 #include "rt/frame/loop.hpp"
+#include "rt/frame/steal_evidence.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/memory.hpp"
 #include "tools/walk/frame_share.hpp"
@@ -47,7 +48,8 @@ struct Session {
     std::optional<rt::DisplayClock> display;  ///< where a display tells when it shows pictures
     std::uint64_t frames = 0;                 ///< 0: until stopped
     std::vector<pid_t> rasterisers;
-    std::vector<pid_t> on_frame_core;  ///< those of them that share the frame thread's core
+    std::vector<pid_t> on_frame_core;        ///< those of them that share the frame thread's core
+    std::optional<rt::StealEvidence> steal;  ///< real clock: what the host took of the frame's cores
     KeptFrame kept;
     rt::ControlSchedule control;
     std::int64_t burn_ns = 0;  ///< the control's
