@@ -10,6 +10,7 @@
 
 #include "rt/clock/clock.hpp"
 #include "rt/monitor/recorder.hpp"
+#include "rt/threads/usage.hpp"
 #include "tools/walk/control_proof.hpp"
 #include "tools/walk/prepare_thread.hpp"
 #include "tools/walk/walk_results.hpp"
@@ -156,7 +157,7 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     RegionClip* clip = s.input ? s.input->clip() : nullptr;
     if (!s.virtual_clock) {
         preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, jump_poses, clip,
-                                                    prepare_placement(s.plan), shared_cores(s) > 0);
+                                                    prepare_placement(s.plan), shared_cores(s) > 0, s.observer.inject_prepare);
         if (const auto& refused = preparing->misplaced())
             s.facts.degraded.push_back({rt::LackKind::placing, refused->what, refused->remedy});
     }
