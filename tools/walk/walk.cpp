@@ -245,6 +245,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     };
     if (!s.virtual_clock) {
         s.steal.emplace(s.rasterisers.empty() ? rt::CpuMask{s.plan.frame_core} : s.plan.all);
+        read_core_steal(s);  // before the first frame is due
         recorder_options.on_batch = [&](std::span<rt::FrameRecord> records) {
             read_core_steal(s);
             s.steal->judge(records);
