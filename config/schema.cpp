@@ -90,6 +90,22 @@ std::vector<Entry> picture_entries() {
     };
 }
 
+/// Where the eye is before the screen.
+std::vector<Entry> seat_entries() {
+    return {
+        number("screen_width_cm", "cm", 0, 100000,
+               "Width of one screen. With eye_distance_cm it sets the field of view of every pose; 0: the path does.",
+               &S::screen_width_cm),
+        number("eye_distance_cm", "cm", 0, 100000,
+               "Distance of the eye from the plane of the screen. Screens side by side share it, each with its own shift_x.",
+               &S::eye_distance_cm),
+        number(
+            "acuity_arcmin", "arcminutes", 0, 600,
+            "Angle that the eye can tell apart. Finer errors are not bought. 0: one arcminute with a seat, else pixels decide.",
+            &S::acuity_arcmin),
+    };
+}
+
 std::vector<Entry> make_entries(const Registry& selectors, const Registry& backends) {
     return {
         file_name("model", "The .walk model, relative to this file's folder; \"\": none, so the command line must name one.",
@@ -193,15 +209,17 @@ Schema::Schema(Registry selectors, Registry backends, std::span<const Renamed> r
             entry.absent = selectors_.absent;
         else if (entry.key == "backend")
             entry.absent = backends_.absent;
-    const std::vector<Entry> walker = walker_entries();
-    entries_.insert(entries_.begin() + 5, walker.begin(), walker.end());  // after "steering"
-    const std::vector<Entry> screen = screen_entries();
-    const auto backend = std::ranges::find(entries_, "backend", &Entry::key);
-    entries_.insert(backend + 1, screen.begin(), screen.end());
-    const std::vector<Entry> picture = picture_entries();
-    entries_.insert(std::ranges::find(entries_, string_view("budget_ms"), &Entry::key), picture.begin(), picture.end());
+    insert_after("steering", walker_entries());
+    insert_after("height", picture_entries());
+    insert_after("shift_y", seat_entries());
+    insert_after("backend", screen_entries());
     defaults_.selector = selectors_.usual;
     defaults_.backend = backends_.usual;
+}
+
+void Schema::insert_after(string_view key, const std::vector<Entry>& more) {
+    const auto at = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.key == key; });
+    entries_.insert(at + 1, more.begin(), more.end());
 }
 
 const Entry* Schema::find(string_view key) const {

@@ -32,15 +32,17 @@ struct Settings {
     double lift_m = 0;          ///< added to the path's heights
     double open_limit_s = 600;  ///< the daemon's: for how long opening a model may take
     double rate_hz = 30;
-    std::uint32_t width = 1280, height = 720;  ///< pixels
-    bool fullscreen = false;                   ///< of the window, at first
-    double pointer_turn_deg = 0.15;            ///< turn for each pixel of the window's pointer
-    double shift_x = 0, shift_y = 0;           ///< off-axis projection, in half widths and half heights of the image
-    double budget_ms = 0;                      ///< 0: what the rate allows
-    double accuracy = 0;                       ///< rad^-1 to stop at; 0: as far as the budget goes
-    double min_accuracy = 0;                   ///< rad^-1 that is bought first; 0: nothing is guaranteed
-    double resolution_pct = 0;                 ///< of the sides at which frames are drawn; a step of 12.5; 0: chosen
-    std::uint32_t samples = 1;                 ///< of a pixel: 1, 2 or 4
+    std::uint32_t width = 1280, height = 720;         ///< pixels
+    bool fullscreen = false;                          ///< of the window, at first
+    double pointer_turn_deg = 0.15;                   ///< turn for each pixel of the window's pointer
+    double shift_x = 0, shift_y = 0;                  ///< off-axis projection, in half widths and half heights of the image
+    double screen_width_cm = 0, eye_distance_cm = 0;  ///< the seat, see seat.hpp; 0: not given
+    double acuity_arcmin = 0;   ///< angle that the eye tells apart; 0: one arcminute with a seat, else unknown
+    double budget_ms = 0;       ///< 0: what the rate allows
+    double accuracy = 0;        ///< rad^-1 to stop at; 0: as far as the budget goes
+    double min_accuracy = 0;    ///< rad^-1 that is bought first; 0: nothing is guaranteed
+    double resolution_pct = 0;  ///< of the sides at which frames are drawn; a step of 12.5; 0: chosen
+    std::uint32_t samples = 1;  ///< of a pixel: 1, 2 or 4
     rt::TextureFilter filter = rt::TextureFilter::automatic;
     double cost_scale = 1;          ///< factor on predicted costs (real clock) or on charged ones (virtual clock)
     std::string selector, backend;  ///< names out of registries
@@ -116,6 +118,8 @@ public:
     [[nodiscard]] const Settings& defaults() const { return defaults_; }
 
 private:
+    void insert_after(std::string_view key, const std::vector<Entry>& more);
+
     Registry selectors_, backends_;
     std::span<const Renamed> renamed_;
     std::vector<Entry> entries_;

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "config/seat.hpp"
 #include "rt/base/text.hpp"
 
 namespace surefoot::config {
@@ -201,6 +202,8 @@ Result<void> check(const Configuration& configuration) {
                      fmt::format("A budget of {} ms is longer than a frame at {} Hz ({:.3f} ms)", s.budget_ms, s.rate_hz,
                                  1000.0 / s.rate_hz),
                      "Lower the budget or the rate, or use late = \"float\"", ErrorKind::misuse};
+    if (auto problem = seat_problem(s))
+        return Error{place(problem->key), std::move(problem->what), std::move(problem->remedy), ErrorKind::misuse};
     return {};
 }
 
@@ -261,6 +264,8 @@ std::string explain(const Configuration& configuration) {
     for (const Entry& entry : configuration.schema->entries())
         text += fmt::format("{:<16} {:<12} {:<8} {:<{}}  {}\n", entry.key, value_text(configuration.values, entry), entry.unit,
                             configuration.origin(entry.key).text(), widest, limits_of(entry));
+    if (const auto seat = seat_of(configuration.values))
+        text += fmt::format("The seat gives a field of view of {}, in every pose.\n", seat_text(*seat));
     return text;
 }
 

@@ -119,12 +119,14 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     if (!chosen || !(hints.planned_us[0] > 0.0) || e.options.prepare.full_depth) return;
     // As Budget counts it: the fixed time, and the ends of slices.
     const double slice_end_us = static_cast<double>(e.costs.combine.submit_weight * e.costs.slice_us);
+    // What is below the acuity anyway does not look softer.
+    const auto sharper = static_cast<float>(prepare::resolved_rad(out) / model::pixel_angle(out.region.centre, viewport));
     const auto lost = [&](const prepare::ValueCurve& curve, float at) {
         const double fixed_us =
             static_cast<double>(e.costs.combine_at(at, viewport).fixed_us + e.costs.enlarge_us(at, viewport)) + slice_end_us;
         const double planned_us = hints.planned_us[model::resolution_step(at)];
         const double items_us = (planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us));
-        return prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(at));
+        return prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(std::min(1.0F, at * sharper)));
     };
     const float other = e.resolution.trial(hints.planned_us);
     if (other > 0.0F) {
@@ -322,8 +324,7 @@ bool covers(const prepare::Region& region, const Pose& pose, model::Viewport vie
     const double w = std::min(1.0, std::abs(glm::dot(pose.orientation, region.centre.orientation)));
     const double turned = 2.0 * std::acos(w);
     // The acos of a rounded 1 is up to 2e-8: far below any region's angle, but not below 0.
-    const model::SideAngles now = model::side_angles(pose, viewport), then = model::side_angles(region.centre, viewport);
-    const double grown = std::max({0.0, now.right - then.right, then.left - now.left, now.up - then.up, then.down - now.down});
+    const double grown = model::widened_rad(pose, region.centre, viewport);
     return moved <= region.radius_m + 1e-9 && turned + grown <= region.angle_rad + 1e-6;
 }
 
@@ -343,6 +344,9 @@ prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s,
         region.centre.orientation = glm::normalize(glm::angleAxis(0.5 * angle, axis / length) * now.orientation);
     region.radius_m = 0.75 * travel + 0.25;
     region.angle_rad = std::min(1.0, 0.75 * angle + 0.06);
+    // The widest of the next views, and a quarter more for a change of speed: what is prepared serves all narrower ones.
+    const double widening = (now.fov_y_rad - before.fov_y_rad) / dt * horizon_s;
+    if (widening > 0.0) region.centre.fov_y_rad = std::min(now.fov_y_rad + 1.25 * widening, std::max(now.fov_y_rad, 3.1));
     return region;
 }
 

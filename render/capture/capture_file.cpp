@@ -22,8 +22,8 @@ using model::Index;
 using model::none;
 
 constexpr std::uint32_t magic = 0x50434653;  // "SFCP"
-constexpr std::uint32_t version = 7, version_without_guarantee = 6, version_without_reserve = 5, version_without_items = 4,
-                        version_without_values = 3;
+constexpr std::uint32_t version = 8, version_without_acuity = 7, version_without_guarantee = 6, version_without_reserve = 5,
+                        version_without_items = 4, version_without_values = 3;
 constexpr std::uint64_t max_bytes = 1ULL << 31U;  // unpacked
 constexpr std::uint32_t max_nodes = 1U << 26U;    // replay makes room for them
 constexpr std::size_t header_bytes = 40;
@@ -37,6 +37,7 @@ void each_field(Io& io, Frame& f) {
        f.region.radius_m, f.region.angle_rad, f.viewport.width, f.viewport.height, f.viewport.shift_x, f.viewport.shift_y,
        f.visits, f.truncated, f.full_cost.submit_us, f.full_cost.raster_us, f.target_error_rad, f.cpu_us, f.wall_us);
     if (io.has_values) io(f.resolution, f.full_value);
+    if (io.has_acuity) io(f.acuity_rad);
 }
 template <class Io, class C>
 void each_setting(Io& io, C& c) {
@@ -92,7 +93,7 @@ public:
         const auto bytes = std::as_bytes(std::span(s));
         out.insert(out.end(), bytes.begin(), bytes.end());
     }
-    static constexpr bool has_values = true, has_items = true, has_reserve = true, has_guarantee = true;
+    static constexpr bool has_values = true, has_items = true, has_reserve = true, has_guarantee = true, has_acuity = true;
     std::vector<std::byte> out;
 
 private:
@@ -111,7 +112,8 @@ public:
           has_values(file_version > version_without_values),
           has_items(file_version > version_without_items),
           has_reserve(file_version > version_without_reserve),
-          has_guarantee(file_version > version_without_guarantee) {}
+          has_guarantee(file_version > version_without_guarantee),
+          has_acuity(file_version > version_without_acuity) {}
     template <class... T>
     void operator()(T&... values) {
         (get(values), ...);
@@ -136,6 +138,7 @@ public:
     bool has_items;   ///< whether it holds what was offered beside forms
     bool has_reserve;
     bool has_guarantee;  ///< whether it holds importance and the guaranteed error
+    bool has_acuity;
 
 private:
     void get(bool& value) { value = in.read<std::uint8_t>() != 0; }
@@ -184,6 +187,7 @@ Result<void> check(const Capture& c, const std::string& place) {
     if (c.node_count == 0 || c.node_count > max_nodes) return bad("The number of nodes is out of range");
     if (!(c.hysteresis >= 1.0F && c.hysteresis <= 16.0F)) return bad("The hysteresis is out of range");
     if (!(c.max_error_rad >= 0.0)) return bad("The guaranteed error is out of range");
+    if (!(c.prepared.acuity_rad >= 0.0 && c.prepared.acuity_rad <= 1.0)) return bad("The acuity is out of range");
     if (!(c.reserve_share >= 0.0F && c.reserve_share <= 1.0F)) return bad("The reserve is out of range");
     const auto& f = c.prepared;
     std::size_t next_child = 1;

@@ -72,6 +72,11 @@ SideAngles side_angles(const Pose& pose, Viewport viewport, double angle_rad) {
             -widen(-sides.down, farther_x, angle_rad), widen(sides.up, farther_x, angle_rad)};
 }
 
+double widened_rad(const Pose& view, const Pose& other, Viewport viewport) {
+    const SideAngles now = side_angles(view, viewport), then = side_angles(other, viewport);
+    return std::max({0.0, now.right - then.right, then.left - now.left, now.up - then.up, then.down - now.down});
+}
+
 HalfAngles half_angles(const Pose& pose, Viewport viewport, double angle_rad) {
     const SideAngles sides = side_angles(pose, viewport, angle_rad);
     return {std::max(-sides.left, sides.right), std::max(-sides.down, sides.up)};

@@ -46,6 +46,9 @@ struct SideAngles {
 };
 SideAngles side_angles(const Pose& pose, Viewport viewport, double angle_rad = 0.0);
 
+/// By how much a view reaches further on any side than another in the same direction does, rad; 0 or more.
+double widened_rad(const Pose& view, const Pose& other, Viewport viewport);
+
 /// Distance of a frustum's corners in the second test: behind the whole model, from anywhere in or near it.
 inline double far_corners_m(const Box& model) { return 2.0 * model.diagonal() + 1000.0; }
 

@@ -143,7 +143,7 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
         choice.surface_px *= view.wide.viewport_pixels / view.scale.viewport_pixels;  // of full resolution
         choice.error_rad = error_rad;
         choice.benefit =
-            benefit_of(weight.weight, accuracy_gain(error_rad, view.pixel_angle_rad), unusable_penalty(weight.size, error_rad));
+            benefit_of(weight.weight, accuracy_gain(error_rad, view.resolved_rad), unusable_penalty(weight.size, error_rad));
         choice.subtree_benefit = choice.benefit;
         choice.triangles = model_.reps[r].triangles;
     };

@@ -16,9 +16,9 @@ namespace surefoot::prepare {
 struct RegionView {
     dvec3 eye{0.0};
     double radius_m = 0;
-    model::ViewScale scale;  ///< at the centre's orientation; used for pixels
-    model::ViewScale wide;   ///< widened by the region's angle, so that the rim counts; used for size and focus
-    float pixel_angle_rad = 1e-3F;
+    model::ViewScale scale;      ///< at the centre's orientation; used for pixels
+    model::ViewScale wide;       ///< widened by the region's angle, so that the rim counts; used for size and focus
+    float resolved_rad = 1e-3F;  ///< prepare::resolved_rad()
     float target_error_rad = 0;  ///< representations with a smaller error are not offered
     bool full_depth = false;
     float full_factor = 1, coarse_factor = 1;  ///< on the costs of full detail and of all other forms
@@ -55,11 +55,12 @@ struct Weight {
     float size_m = 0;  ///< square root of the box's outline, as a mean of all directions
 };
 
-/// The accuracy factor of the benefit, 0..1: the mean of e / (e + 8) and e / (e + 256), with e the error in pixels.
+/// The accuracy factor of the benefit, 0..1: the mean of e / (e + 8) and e / (e + 256), with e the error in
+/// pixels. If the acuity is more than a pixel, e is in multiples of that.
 /// Errors below a pixel win little: a twentieth at one pixel. An error of hundreds of pixels (missing ground) still ranks above
 /// one of dozens (a coarse tree).
-inline float accuracy_gain(float error_rad, float pixel_angle_rad) {
-    const float error_px = error_rad / pixel_angle_rad;
+inline float accuracy_gain(float error_rad, float resolved_rad) {
+    const float error_px = error_rad / resolved_rad;
     return 0.5F * (error_px / (error_px + 8.0F) + error_px / (error_px + 256.0F));
 }
 

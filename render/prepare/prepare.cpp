@@ -116,6 +116,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
       workers(o.workers, o.worker_hooks),
       groups(m.group_losses.empty() ? nullptr : std::make_unique<model::LossGroups>(m)) {
     options.max_candidates = std::max(1U, options.max_candidates);
+    options.acuity_rad = std::clamp(finite_or(options.acuity_rad, 0.0), 0.0, 1.0);
     std::uint32_t max_children = 0, max_reps = 1;
     std::size_t max_forms = 0;  // nodes may share some
     for (const model::Node& node : m.nodes) {
@@ -181,8 +182,10 @@ RegionView Preparer::Impl::view_of(const PreparedFrame& frame, double speed_mps,
     view.radius_m = region.radius_m;
     view.scale = model::scaled(model::make_view_scale(pose, viewport), resolution);
     view.wide = model::make_view_scale(pose, viewport, region.angle_rad);
-    view.pixel_angle_rad = static_cast<float>(model::pixel_angle(pose, viewport));
-    const double target = options.target_error_rad > 0.0 ? options.target_error_rad : 0.125 * view.pixel_angle_rad / resolution;
+    view.resolved_rad = static_cast<float>(resolved_rad(frame));
+    const double drawn_rad = double{static_cast<float>(model::pixel_angle(pose, viewport))} / resolution;
+    const double target =
+        options.target_error_rad > 0.0 ? options.target_error_rad : std::max(0.125 * drawn_rad, frame.acuity_rad);
     view.target_error_rad = static_cast<float>(target) * used_factor;
     view.full_depth = options.full_depth;
     view.full_factor = frame.full_factor;
@@ -349,7 +352,7 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
 void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
     Looks looks = looks_of(model, options.sky, groups.get());
     looks.forgiven = forgiven;
-    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks, shown.before_sky());
+    values.run(costs.combine, view.resolved_rad, weights, shown_px, out, looks, shown.before_sky());
 }
 
 // A band between raising and lowering, so that the target does not swing while the eye stands still.
@@ -385,6 +388,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.hidden_nodes.clear();
     out.frame = frame;
     out.viewport = viewport;
+    out.acuity_rad = s.options.acuity_rad;
     out.candidates.clear();
     out.choices.clear();
     out.truncated = false;
@@ -420,12 +424,13 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.evaluate_all(view, out);
     s.tried.region = out.region;
     s.tried.viewport = viewport;
+    s.tried.acuity_rad = out.acuity_rad;
     s.tried.full_factor = out.full_factor;
     s.tried.coarse_factor = out.coarse_factor;
     s.shown_px = s.shown.run(s.weights, out.candidates, out.choices, view.wide, view.scale,
                              {&s.model, &s.evaluator.item_costs().estimator(), view.eye}, s.hidden_nodes);
     s.set_values(view, out);
-    propagate_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
+    propagate_up(s.costs.combine, view.resolved_rad, s.weights, out);
     enforce_monotone_benefit(out);
     s.adapt(out);
     out.cpu_us = 1e-3 * static_cast<double>(rt::own_cpu_ns() - cpu_start + s.worker_cpu_ns.load());

@@ -1,6 +1,7 @@
 // The prepared frame: visible candidates with cost, error and benefit for a region of poses, in flat arrays.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -89,10 +90,16 @@ struct PreparedFrame {
     std::uint32_t visits = 0;                  ///< nodes tested, invisible ones included
     std::uint32_t hidden = 0;                  ///< of these, nodes in the view that others hide; their subtrees were not tested
     bool truncated = false;                    ///< capacity reached: deeper detail is missing, but the tree is complete and legal
+    double acuity_rad = 0;                     ///< PrepareOptions::acuity_rad
     float target_error_rad = 0;                ///< nodes with a smaller error were not opened, and finer choices not offered
     double cpu_us = 0;                         ///< all workers together
     double wall_us = 0;
 };
+
+/// The smallest angle that shows: a pixel's, or what the eye can tell apart if that is more.
+inline double resolved_rad(const PreparedFrame& frame) {
+    return std::max(model::pixel_angle(frame.region.centre, frame.viewport), frame.acuity_rad);
+}
 
 /// Called on worker threads, several at a time; never on the thread that calls run().
 struct WorkerHooks {
@@ -103,7 +110,10 @@ struct WorkerHooks {
 
 /// Limits and weights of preparation, fixed when the Preparer is made.
 struct PrepareOptions {
-    double target_error_rad = 0;  ///< do not open nodes whose error is below this (0: an eighth of a drawn pixel)
+    /// Do not open nodes whose error is below this. 0: an eighth of a drawn pixel, or the acuity if that is more.
+    double target_error_rad = 0;
+    /// Angle that the eye can tell apart, seen in the picture's own field of view; 0: unknown, so a pixel is.
+    double acuity_rad = 0;
     std::uint32_t max_candidates = 1U << 18U;
     std::uint32_t max_choices = 1U << 20U;
     double focus_strength = 0.5;  ///< 0: the periphery counts as much as the centre

@@ -34,7 +34,7 @@ Below below(const Candidate& candidate, std::span<const Weight> weights, const P
 
 }  // namespace
 
-void propagate_up(const model::FrameCombine& combine, float pixel_angle_rad, std::span<Weight> weights, PreparedFrame& frame) {
+void propagate_up(const model::FrameCombine& combine, float resolved_rad, std::span<Weight> weights, PreparedFrame& frame) {
     double full_submit_us = 0, full_raster_us = 0;  // double: a hundred thousand small costs
     for (std::size_t i = frame.candidates.size(); i-- > 0;) {
         Candidate& candidate = frame.candidates[i];
@@ -64,7 +64,7 @@ void propagate_up(const model::FrameCombine& combine, float pixel_angle_rad, std
         for (std::size_t c = choices.size(); c-- > 0;) {
             const float error_m = choices[c].error_rad * weights[i].distance_m;
             const float gain =
-                benefit_of(sum.weight.weight, accuracy_gain(error_m / sum.weight.distance_m, pixel_angle_rad),
+                benefit_of(sum.weight.weight, accuracy_gain(error_m / sum.weight.distance_m, resolved_rad),
                            unusable_penalty(weights[i].size, choices[c].error_rad));  // its own: round the eye, not below
             const float share = penalty_of(c);
             choices[c].benefit *= share;

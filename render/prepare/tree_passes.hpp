@@ -26,7 +26,7 @@ PlaneMask cull_planes(const model::Frustum& frustum, const Box& box, PlaneMask p
 /// Upwards: fills children_cost, floor_cost, floor_open, subtree_benefit, and the frame's full_cost.
 /// weights: one a candidate; replaced by the weights of the subtrees. Source: Maciel 1994, figure 3.18; here the error of a
 /// cluster is seen from its nearest visible object.
-void propagate_up(const model::FrameCombine& combine, float pixel_angle_rad, std::span<Weight> weights, PreparedFrame& frame);
+void propagate_up(const model::FrameCombine& combine, float resolved_rad, std::span<Weight> weights, PreparedFrame& frame);
 
 /// Downwards: limits each benefit to that of the choice before it, and to that of the parent's last choice.
 void enforce_monotone_benefit(PreparedFrame& frame);

@@ -136,7 +136,7 @@ void ValuePass::add(Index parent, std::uint32_t level, float value, float cost) 
 }
 
 /// What a leaf weighs, and the value of each choice of a candidate.
-void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame,
+void ValuePass::set_values(std::size_t i, float resolved_rad, const Weight& seen, float shown_px, PreparedFrame& frame,
                            const Looks& looks, const SkyPixels& sky) {
     const Candidate& candidate = frame.candidates[i];
     Sums& sums = sums_[i];
@@ -157,7 +157,7 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
     }
     // A leaf is seen from its own distance; what stands for many leaves, from their mean one.
     const float per_m = sums.weight > 0.0F ? sums.weight_per_m / sums.weight : 0.0F;
-    const float size_px = seen.size_m * per_m / pixel_angle_rad;
+    const float size_px = seen.size_m * per_m / resolved_rad;
     float value = 0.0F;
     const float known = sums.weight > 0.0F ? std::min(1.0F, sums.grouped / sums.weight) : 0.0F;
     for (Index k = candidate.first_choice; k < candidate.first_choice + candidate.choice_count; ++k) {
@@ -165,7 +165,7 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
         model::PictureLoss loss = looks.losses.empty() ? model::PictureLoss{} : looks.losses[choice.rep];
         for (std::size_t s = 0; known > 0.0F && s < loss.colour.size(); ++s)
             loss.colour[s] = lost_[k].colour[s] / sums.weight + (1.0F - known) * loss.colour[s];
-        const float error_rad = choice.error_rad * seen.distance_m * per_m, error_px = error_rad / pixel_angle_rad;
+        const float error_rad = choice.error_rad * seen.distance_m * per_m, error_px = error_rad / resolved_rad;
         const float looked = looks.losses.empty()
                                  ? looks_right(error_px, choice.surface_px, sums.surface_px)
                                  : looks_right_measured(error_px, error_rad, loss_at(loss, size_px), looks.of_missing, size_px);
@@ -272,7 +272,7 @@ void ValuePass::enforce_falling_rates(PreparedFrame& frame) {
     }
 }
 
-void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
+void ValuePass::run(const model::FrameCombine& combine, float resolved_rad, std::span<const Weight> weights,
                     std::span<const float> shown_px, PreparedFrame& frame, const Looks& looks, const SkyPixels& sky) {
     frame.curve = {};
     frame.full_value = 0;
@@ -291,7 +291,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
     for (std::size_t i = n; i-- > 0;) {
         const Candidate& candidate = frame.candidates[i];
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
-        set_values(i, pixel_angle_rad, weights[i], shown_px[i], frame, looks, sky);
+        set_values(i, resolved_rad, weights[i], shown_px[i], frame, looks, sky);
         add_to_groups(i, frame, looks);
         const OwnChoices own{combine, choices, hull_of(combine, choices, room)};
         if (candidate.child_count == 0) full_value += static_cast<double>(choices.back().value);
@@ -325,7 +325,7 @@ void estimate_values(const model::FrameCombine& combine, PreparedFrame& frame) {
     }
     ValuePass pass;
     pass.reserve(static_cast<std::uint32_t>(frame.candidates.size()), frame.choices.size());
-    pass.run(combine, static_cast<float>(model::pixel_angle(frame.region.centre, frame.viewport)), weights, shown_px, frame);
+    pass.run(combine, static_cast<float>(resolved_rad(frame)), weights, shown_px, frame);
 }
 
 }  // namespace surefoot::prepare

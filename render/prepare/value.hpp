@@ -50,7 +50,7 @@ public:
     void reserve(std::uint32_t max_candidates, std::size_t max_choices = 0);
     /// weights: one a candidate, as Evaluator::evaluate made them. Call it before propagate_up(), which replaces them.
     /// shown_px: one a candidate, read of leaves alone.
-    void run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
+    void run(const model::FrameCombine& combine, float resolved_rad, std::span<const Weight> weights,
              std::span<const float> shown_px, PreparedFrame& frame, const Looks& looks = {}, const SkyPixels& sky = {});
 
 private:
@@ -76,7 +76,7 @@ private:
     };
     std::uint32_t take_curve();
     void add(Index parent, std::uint32_t level, float value, float cost);
-    void set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame,
+    void set_values(std::size_t i, float resolved_rad, const Weight& seen, float shown_px, PreparedFrame& frame,
                     const Looks& looks, const SkyPixels& sky);
     void add_to_groups(std::size_t i, const PreparedFrame& frame, const Looks& looks);
     void add_own(const Candidate& candidate, const OwnChoices& own);

@@ -24,8 +24,7 @@ constexpr int max_passes = 20;  // then what fits is drawn
 CommonErrorCuts::CommonErrorCuts(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget)
     : builder_(builder),
       budget_(budget),
-      two_pixels_rad_(
-          static_cast<float>(default_threshold_px * model::pixel_angle(input.prepared->region.centre, input.prepared->viewport))),
+      two_pixels_rad_(static_cast<float>(default_threshold_px * prepare::resolved_rad(*input.prepared))),
       shown_(state.shown),
       share_(fresh_share(state)),
       new_factor_(state.hysteresis > 1.0F ? 1.0F / shown_error_factor : 1.0F),

@@ -46,7 +46,7 @@ public:
 class ByDistance final : public Selector {
 public:
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
-        const double pixel = model::pixel_angle(input.prepared->region.centre, input.prepared->viewport);
+        const double pixel = prepare::resolved_rad(*input.prepared);
         const auto threshold =
             static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : default_threshold_px * pixel);
         walk(input, state, cut, [threshold](const CutBuilder& builder, Index c) {

@@ -60,7 +60,7 @@ public:
         Budget budget(input);
         CutBuilder builder(input, state);
         builder.buy_items(budget);
-        const double half_pixel = 0.5 * model::pixel_angle(input.prepared->region.centre, input.prepared->viewport);
+        const double half_pixel = 0.5 * prepare::resolved_rad(*input.prepared);
         const auto threshold = static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : half_pixel);
         builder.take_root(fixed_form(builder, 0, threshold));
         Sum total;

@@ -56,6 +56,9 @@ struct FrameRecord {
     std::int64_t preempted_ns = 0;   ///< the same gap, where involuntary switches were seen
     std::int64_t waited_ns = 0;      ///< known waits: for the driver's rasterisers, for the display; not for the time of showing
     std::int64_t upload_ns = 0;
+    /// Growth of the host's steal in the readings round the frame, of the core where it grew most; -1: the kernel did not say.
+    /// Filled after the frame, by StealEvidence.
+    std::int64_t core_steal_ns = -1;
     std::int64_t input_stamp_ns = 0;                   ///< of the newest report in this frame's pose; 0: none
     std::uint64_t input_reports = 0;                   ///< in its pose, since the walk began
     std::uint32_t skipped_before = 0;                  ///< slots skipped just before this one
@@ -89,6 +92,7 @@ struct FrameRecord {
     std::uint32_t samples = 1;   ///< of a pixel
     bool other_samples = false;  ///< the driver lacks the requested number
     TextureFilter filter = TextureFilter::bilinear;
+    bool by_core_steal = false;  ///< a miss that the clocks alone would call own, and `stolen` by core_steal_ns
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
     ShownBy shown_by = ShownBy::nothing;
     bool at_rest = false;  ///< no cut was drawn: the shown picture stays, or full detail replaces it

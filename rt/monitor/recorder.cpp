@@ -7,8 +7,15 @@
 
 namespace surefoot::rt {
 
+namespace {
+
+constexpr std::size_t max_batch = 256;
+
+}  // namespace
+
 Recorder::Recorder(SpscRing<FrameRecord>& ring, RecorderOptions options) : ring_(ring), options_(std::move(options)) {
     if (options_.keep) records_.reserve(options_.reserve_records);
+    batch_.reserve(max_batch);
     thread_ = std::thread([this] { run(); });
 }
 
@@ -43,11 +50,16 @@ bool Recorder::stopping_before_next_poll() {
 }
 
 void Recorder::drain() {
-    FrameRecord record;
-    while (ring_.try_pop(record)) {
-        if (options_.keep) records_.push_back(record);
-        if (options_.on_record) options_.on_record(record);
-    }
+    do {
+        FrameRecord popped;
+        batch_.clear();
+        while (batch_.size() < max_batch && ring_.try_pop(popped)) batch_.push_back(popped);
+        if (options_.on_batch) options_.on_batch(batch_);
+        for (const FrameRecord& record : batch_) {
+            if (options_.keep) records_.push_back(record);
+            if (options_.on_record) options_.on_record(record);
+        }
+    } while (batch_.size() == max_batch);
 }
 
 }  // namespace surefoot::rt

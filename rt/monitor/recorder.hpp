@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,6 +20,9 @@ struct RecorderOptions {
     bool keep = true;                     ///< false: records only go to on_record (a walk without end)
     std::int64_t poll_ns = 500'000'000;   ///< how often the ring is emptied: a wake-up costs 15 to 150 us of CPU, a record 1
     std::string thread_name = "sf-monitor";
+    /// On the monitor thread, each time the ring was emptied, also of nothing: the new records, before they are kept. May be
+    /// empty.
+    std::function<void(std::span<FrameRecord>)> on_batch;
     std::function<void(const FrameRecord&)> on_record;  ///< live figures; on the monitor thread; may be empty
 };
 
@@ -42,7 +46,7 @@ private:
     void drain();
     SpscRing<FrameRecord>& ring_;
     RecorderOptions options_;
-    std::vector<FrameRecord> records_;
+    std::vector<FrameRecord> records_, batch_;
     Mutex mutex_;
     Condition stop_;
     bool stopping_ GUARDED_BY(mutex_) = false;

@@ -118,6 +118,8 @@ void Telemetry::count(const FrameRecord& f) {
         ++s.misses[static_cast<std::size_t>(f.cause)];
     }
     s.own_misses += f.own_miss ? 1 : 0;
+    s.core_steal_known = s.core_steal_known || f.core_steal_ns >= 0;
+    s.core_steal_misses += f.by_core_steal ? 1 : 0;
     s.downgraded_slices += f.downgraded_slices;
     s.slices += f.slices;
     s.switches += f.switches;

@@ -85,7 +85,9 @@ struct Figures {
     std::array<Distribution, series_count> series;
     std::array<std::uint64_t, cause_count> misses{};  ///< by cause; [none] stays 0
     std::uint64_t frames = 0, skipped_slots = 0, bare_frames = 0;
-    std::uint64_t lost_slots = 0;  ///< records that did not fit into the ring; nothing is known of these slots
+    std::uint64_t lost_slots = 0;         ///< records that did not fit into the ring; nothing is known of these slots
+    bool core_steal_known = false;        ///< FrameRecord::core_steal_ns of any frame is
+    std::uint64_t core_steal_misses = 0;  ///< FrameRecord::by_core_steal
     std::uint64_t own_misses = 0, downgraded_slices = 0, slices = 0, switches = 0, triangles = 0;
     std::uint64_t minor_faults = 0, major_faults = 0, driver_faults = 0, driver_allocations = 0, guard_violations = 0;
     std::uint64_t input_reports = 0, stopped_frames = 0, floor_frames = 0, rest_frames = 0, continues = 0;

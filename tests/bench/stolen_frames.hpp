@@ -53,6 +53,7 @@ inline Result<std::vector<rt::FrameRecord>> read_stolen_frames(const std::string
         r.complete_ns = v[5], r.cpu_ns = v[6], r.stolen_ns = v[7];
         r.voluntary = static_cast<std::uint32_t>(v[8]), r.involuntary = static_cast<std::uint32_t>(v[9]);
         r.minor_faults = static_cast<std::uint32_t>(v[10]);
+        r.core_steal_ns = v[11] * 1'000'000;
         r.prepared_age = 1;
         r.missed = r.complete_ns > r.deadline_ns;
         records.push_back(r);

@@ -55,6 +55,25 @@ TEST(Capture, ReplaysToTheSameCutForEverySelector) {
     }
 }
 
+TEST(Capture, KnowsWhatTheEyeTellsApart) {
+    const TempFile file;
+    prepare::PrepareOptions options;
+    options.acuity_rad = 0.02;
+    Scene s(test::town(4), options);
+    prepare::Region region;
+    region.centre.position = dvec3(0, 3, 30);
+    s.look(region);
+    s.run("distance", 5500);
+    const Capture before = take(s.input(5500), "distance", memory_of(s), s.cut);
+    ASSERT_TRUE(write_capture(file.path, before));
+    auto after = read_capture(file.path);
+    ASSERT_TRUE(after) << after.error().text();
+    EXPECT_EQ(after->prepared.acuity_rad, 0.02);
+    EXPECT_TRUE(verify(*after));
+    after->prepared.acuity_rad = 0;
+    EXPECT_FALSE(verify(*after)) << "the fixed threshold goes by it";
+}
+
 TEST(Capture, OfALowerResolutionKnowsWhatEnlargingCosts) {
     const TempFile file;
     Scene s(test::town(4));

@@ -206,6 +206,18 @@ TEST_F(MonitorPages, ExactPicturesHaveNoErrorAndUnknownIsNotZero) {
     EXPECT_TRUE(j["process"]["rss_bytes"].is_null());
 }
 
+TEST_F(MonitorPages, MissesByTheStealOfCoresAreCountedWhereTheKernelSaysIt) {
+    run(20, 5);
+    EXPECT_FALSE(scrape().samples.contains("surefoot_core_steal_misses_total"));
+    EXPECT_TRUE(nlohmann::json::parse(status_json(page_))["totals"]["core_steal_misses"].is_null());
+    rt::FrameRecord f = monitored_frame(next_++, true);
+    f.core_steal_ns = 10'000'000;
+    f.by_core_steal = true;
+    telemetry_->add(f);
+    EXPECT_EQ(scrape().at("surefoot_core_steal_misses_total"), 1);
+    EXPECT_EQ(nlohmann::json::parse(status_json(page_))["totals"]["core_steal_misses"], 1);
+}
+
 TEST_F(MonitorPages, LabelsAreBoundedWhateverTheMachineLacks) {
     rt::Capabilities c;  // as little as there can be
     c.rt_runtime_us = 100'000;

@@ -170,6 +170,7 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                                    "misses",
                                    "own_misses",
                                    "miss_causes",
+                                   "core_steal_misses",
                                    "frame_ms",
                                    "wake_us",
                                    "select_us",
@@ -190,6 +191,8 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                                    "calibrated",
                                    "input",
                                    "picture",
+                                   "seat",
+                                   "acuity_arcmin",
                                    "unused_ms",
                                    "coarse_frames",
                                    "floor_frames",
@@ -223,6 +226,7 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
     EXPECT_EQ(keys_of(json["control"]), (Keys{"misses", "p_value", "blocks"}));
     EXPECT_EQ(keys_of(json["unused_ms"]), (Keys{"mean", "p50", "p99"}));
     EXPECT_TRUE(json["picture"].is_null()) << "no picture was compared";
+    EXPECT_TRUE(json["core_steal_misses"].is_null()) << "nobody read the cores' steal";
     EXPECT_EQ(json["miss_causes"]["raster"], 1);
     EXPECT_TRUE(json["control"]["p_value"].is_null()) << "no control ran";
     EXPECT_EQ(json["control"]["blocks"].size(), 1U);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/seat.hpp"
 #include "config/settings.hpp"
 #include "render/engine.hpp"
 #include "render/model/walk_file.hpp"
@@ -79,6 +80,7 @@ Result<ValueShares> value_shares(const model::Model& model, const model::CostMod
     prepare::PrepareOptions options;
     options.workers = request.workers;
     options.sky = request.sky;
+    options.acuity_rad = request.acuity_rad;
     options.max_candidates = static_cast<std::uint32_t>(std::min<std::size_t>(options.max_candidates, model.nodes.size()));
     prepare::Preparer preparer(model, costs, options);
     prepare::PreparedFrame frame;
@@ -114,6 +116,7 @@ Result<ValueShares> value_shares_of_walk(const walk::WalkRequest& walk, ShareReq
     if (!model) return model.error();
     auto path = walk::choose_path(walk.path_file, walk.model_file, *model, walk.lift_m);
     if (!path) return path.error();
+    walk::sit(walk, path->path);
     std::string note;
     const std::string state = walk::state_directory(walk.state_dir);
     auto table = walk::load_costs(state, "", note);
@@ -121,6 +124,7 @@ Result<ValueShares> value_shares_of_walk(const walk::WalkRequest& walk, ShareReq
     auto costs = walk::fitted_costs(state, *table, {file.hash, walk.width, walk.height, walk.backend});
     if (!costs) return costs.error();
     request.viewport = {walk.width, walk.height, walk.shift_x, walk.shift_y};
+    request.acuity_rad = config::acuity_rad(walk);
     request.period_s = 1.0 / walk.rate_hz;
     request.slice_us = walk.slice_us;
     request.benefit = walk.benefit;

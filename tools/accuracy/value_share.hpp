@@ -47,6 +47,7 @@ struct ShareRequest {
     int workers = 1;
     std::array<float, 3> sky = model::usual_sky;
     model::Viewport viewport;
+    double acuity_rad = 0;  ///< PrepareOptions::acuity_rad
     select::OracleLimits limits;
 };
 

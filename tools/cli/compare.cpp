@@ -45,8 +45,9 @@ accuracy::FindShares find_shares(const CompareArguments& a) {
 }
 
 /// Settings of the comparison itself: the same for all walks, set by their own options.
-constexpr std::array of_all = {"rasterisers", "width",  "height",  "rate_hz", "backend", "clock",   "shift_x",
-                               "shift_y",     "lift_m", "control", "screen",  "mode",    "rotation"};
+constexpr std::array of_all = {"rasterisers", "width",   "height",   "rate_hz",         "backend",
+                               "clock",       "shift_x", "shift_y",  "lift_m",          "control",
+                               "screen",      "mode",    "rotation", "screen_width_cm", "eye_distance_cm"};
 
 /// With --resource triangles, these are the same for all walks too.
 constexpr std::array of_triangles = {"budget_ms", "resolution",    "filter",   "hysteresis",
@@ -171,6 +172,23 @@ void add_resource(CLI::App* c, const std::shared_ptr<CompareArguments>& a) {
         ->capture_default_str();
 }
 
+/// Settings of all walks of the comparison.
+void add_settings_of_all(CLI::App* c, const std::shared_ptr<SettingArguments>& settings) {
+    for (const auto& [flag, key] :
+         std::initializer_list<std::pair<const char*, const char*>>{{"--lift", "lift_m"},
+                                                                    {"--rate", "rate_hz"},
+                                                                    {"--budget", "budget_ms"},
+                                                                    {"--late", "late"},
+                                                                    {"--sky", "sky"},
+                                                                    {"--screen-width", "screen_width_cm"},
+                                                                    {"--eye-distance", "eye_distance_cm"},
+                                                                    {"--acuity", "acuity_arcmin"},
+                                                                    {"--clock", "clock"},
+                                                                    {"--workers", "workers"},
+                                                                    {"--rasterisers", "rasterisers"}})
+        add_setting(c, settings, flag, key);
+}
+
 }  // namespace
 
 void add_compare(CLI::App& app, Context& context) {
@@ -220,15 +238,7 @@ void add_compare(CLI::App& app, Context& context) {
         ->check(whole_number_within(0, 1000))
         ->capture_default_str();
     c->add_option("--size", a->settings->size, "Size of the picture in pixels [1280x720]");
-    for (const auto& [flag, key] : std::initializer_list<std::pair<const char*, const char*>>{{"--lift", "lift_m"},
-                                                                                              {"--rate", "rate_hz"},
-                                                                                              {"--budget", "budget_ms"},
-                                                                                              {"--late", "late"},
-                                                                                              {"--sky", "sky"},
-                                                                                              {"--clock", "clock"},
-                                                                                              {"--workers", "workers"},
-                                                                                              {"--rasterisers", "rasterisers"}})
-        add_setting(c, a->settings, flag, key);
+    add_settings_of_all(c, a->settings);
     c->add_flag("--no-fifo", a->settings->no_fifo, "Ordinary scheduling (the figures are marked)");
     c->add_option_function<std::string>(
          "--backend",

@@ -1,6 +1,9 @@
 // surefoot config: a settings file checked, and the values that would hold with where each came from.
 #include <fmt/format.h>
 
+#include <numbers>
+
+#include "config/seat.hpp"
 #include "config/settings.hpp"
 #include "config/values.hpp"
 #include "tools/cli/command.hpp"
@@ -63,6 +66,14 @@ ordered_json to_json(const config::Configuration& c, const config::Entry& entry)
     return object;
 }
 
+/// Null where no seat is given.
+ordered_json seat_json(const config::Settings& settings) {
+    const auto seat = config::seat_of(settings);
+    if (!seat) return nullptr;
+    constexpr double degrees = 180 / std::numbers::pi;
+    return {{"fov_x_deg", seat->fov_x_rad * degrees}, {"fov_y_deg", seat->fov_y_rad * degrees}};
+}
+
 int run_print(const ConfigArguments& a) {
     config::Configuration c(walk::settings_schema());
     if (!a.file.empty()) {
@@ -84,6 +95,7 @@ int run_print(const ConfigArguments& a) {
     object["file"] = a.file.empty() ? ordered_json(nullptr) : ordered_json(a.file);
     object["profile"] = a.profile.empty() ? ordered_json(nullptr) : ordered_json(a.profile);
     object["settings"] = std::move(settings);
+    object["seat"] = seat_json(c.values);
     print_json(object);
     return exit_success;
 }

@@ -135,6 +135,11 @@ void add_slots(Exposition& e, const Figures& f) {
         e.count(f.misses[static_cast<std::size_t>(i)], fmt::format("cause=\"{}\"", rt::cause_names[static_cast<std::size_t>(i)]));
     e.counter("surefoot_own_misses_total", "Misses that would be late even without the time that the host or other threads took.",
               f.own_misses);
+    if (f.core_steal_known)
+        e.counter(
+            "surefoot_core_steal_misses_total",
+            "Misses that looked like work and are called stolen by the kernel's steal of the frame's cores (ticks of 10 ms).",
+            f.core_steal_misses);
 }
 
 void add_times(Exposition& e, const Figures& f) {

@@ -84,6 +84,7 @@ ordered_json totals_json(const Figures& f) {
     j["misses"] = f.all_misses();
     j["own_misses"] = f.own_misses;
     j["miss_causes"] = causes;
+    j["core_steal_misses"] = f.core_steal_known ? ordered_json(f.core_steal_misses) : ordered_json(nullptr);
     j["downgrades"] = f.downgraded_slices;
     j["switches"] = f.switches;
     j["page_faults"] = f.minor_faults + f.major_faults;

@@ -159,6 +159,15 @@ Json guarantee_of(const GuaranteeSummary& g) {
             {"binding_name", binds ? Json(g.binding_name) : Json(nullptr)}};
 }
 
+/// Null where no seat is given.
+Json seat_of(const SeatSummary& s) {
+    if (!s.given) return nullptr;
+    return {{"screen_width_cm", rounded(s.screen_width_cm)},
+            {"eye_distance_cm", rounded(s.eye_distance_cm)},
+            {"fov_x_deg", rounded(s.fov_x_deg)},
+            {"fov_y_deg", rounded(s.fov_y_deg)}};
+}
+
 }  // namespace
 
 std::string to_json(const WalkSummary& s) {
@@ -171,6 +180,7 @@ std::string to_json(const WalkSummary& s) {
         {"misses", s.misses},
         {"own_misses", s.own_misses},
         {"miss_causes", causes},
+        {"core_steal_misses", s.core_steal_known ? Json(s.core_steal_misses) : Json(nullptr)},
         {"frame_ms", tail(s.frame_ms)},
         {"wake_us", tail(s.wake_us)},
         {"select_us", tail(s.select_us)},
@@ -214,6 +224,8 @@ std::string to_json(const WalkSummary& s) {
         {"control", control_of(s.control)},
         {"input", input_of(s.input)},
         {"picture", picture_of(s.picture)},
+        {"seat", seat_of(s.seat)},
+        {"acuity_arcmin", s.acuity_arcmin > 0 ? Json(rounded(s.acuity_arcmin)) : Json(nullptr)},
     };
     add_shown(s.shown, json);
     json["display"] = display_of(s.display);

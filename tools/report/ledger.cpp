@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 81> columns = {{
+constexpr std::array<Column, 83> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -71,6 +71,8 @@ constexpr std::array<Column, 81> columns = {{
     {"raster_cpu_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.raster_cpu_ns)); }},
     {"stolen_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.stolen_ns)); }},
     {"preempted_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.preempted_ns)); }},
+    {"core_steal_us", [](auto& r, auto& f) { if (f.core_steal_ns >= 0) add(r, "{:.0f}", us_between(0, f.core_steal_ns)); }},
+    {"by_core_steal", [](auto& r, auto& f) { if (f.core_steal_ns >= 0) add(r, "{:d}", f.by_core_steal); }},
     {"waited_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.waited_ns)); }},
     {"upload_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.upload_ns)); }},
     {"voluntary", [](auto& r, auto& f) { add(r, "{}", f.voluntary); }},

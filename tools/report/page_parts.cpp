@@ -93,6 +93,7 @@ std::string page_header(const WalkSummary& s) {
     if (s.model_triangles > 0)
         out += fmt::format(" The model has {} triangles; a frame drew {} on average.",
                            grouped(static_cast<double>(s.model_triangles)), grouped(s.triangles_mean));
+    if (const std::string seat = seat_words(s); !seat.empty()) out += fmt::format(" Seat: {}.", seat);
     if (s.clock == "virtual") out += " On the virtual clock: times are predictions, not measurements.";
     return out + "</p>\n</header>\n";
 }

@@ -132,15 +132,26 @@ struct DisplaySummary {
     Quantiles after_ms;          ///< from a picture's hand-over until it was shown; of the newest 65 536
 };
 
+/// Where the eye is before the screen.
+struct SeatSummary {
+    bool given = false;
+    double screen_width_cm = 0, eye_distance_cm = 0;
+    double fov_x_deg = 0, fov_y_deg = 0;  ///< of a screen straight before the eye, in every pose
+};
+
 /// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
     std::uint32_t width = 0, height = 0;
     double shift_x = 0, shift_y = 0;  ///< off axis, in halves of the picture
-    std::uint32_t rasterisers = 1;    ///< threads that share raster_cpu_ns; set before summarize
+    SeatSummary seat;
+    double acuity_arcmin = 0;       ///< angle that the eye tells apart; 0: unknown, pixels decide
+    std::uint32_t rasterisers = 1;  ///< threads that share raster_cpu_ns; set before summarize
     double rate_hz = 0, seconds = 0;
     std::uint64_t frames = 0, slots = 0, skipped = 0, misses = 0, own_misses = 0;
     std::map<std::string, std::uint64_t> miss_causes;
+    bool core_steal_known = false;        ///< the kernel told the steal of the frame's cores
+    std::uint64_t core_steal_misses = 0;  ///< that looked like work, and are `stolen` by the steal of the frame's cores
     Quantiles frame_ms, wake_us, select_us, prepare_cpu_us, prepared_age, cost_error, submit_ms, raster_ms, visits, hidden;
     double cost_scale = 1;  ///< the setting
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;

@@ -33,6 +33,8 @@ void count_frames(std::span<const FrameRecord* const> frames, WalkSummary& s) {
         s.skipped += f->skipped_before;
         s.misses += f->missed ? 1 : 0;
         s.own_misses += f->own_miss ? 1 : 0;
+        s.core_steal_known = s.core_steal_known || f->core_steal_ns >= 0;
+        s.core_steal_misses += f->by_core_steal ? 1 : 0;
         if (f->missed) ++s.miss_causes[std::string(rt::cause_of(*f))];
         s.downgrades += f->downgraded_slices;
         s.coarse_frames += f->downgraded_slices > 0 ? 1 : 0;
@@ -169,7 +171,8 @@ ShownSummary shown_figures(std::span<const FrameRecord* const> frames, const std
 
 /// Everything that is counted up starts from zero, so that a summary can be made anew from longer records.
 void clear_counts(WalkSummary& s) {
-    s.frames = s.slots = s.skipped = s.misses = s.own_misses = 0;
+    s.core_steal_known = false;
+    s.frames = s.slots = s.skipped = s.misses = s.own_misses = s.core_steal_misses = 0;
     s.miss_causes.clear();
     s.downgrades = s.coarse_frames = s.floor_frames = s.floor_bound_frames = s.page_faults = s.guard_violations =
         s.driver_faults = s.driver_allocations = 0;

@@ -44,6 +44,7 @@ void timing_rows(LabelledText& table, const WalkSummary& s) {
 }
 
 void quality_rows(LabelledText& table, const WalkSummary& s) {
+    if (const std::string words = seat_words(s); !words.empty()) table.row("seat", words);
     table.row("budget", fmt::format("{:.2f} ms a frame; used {} of the grid (p99 {}), {} of the budget in wall time", s.budget_ms,
                                     percent(s.budget_used_mean), percent(s.budget_used_p99), percent(s.budget_used_wall_mean)));
     if (s.cost_scale != 1)

@@ -63,6 +63,16 @@ std::string off_axis_words(const WalkSummary& s) {
     return fmt::format(", off axis by {:.4g} halves right, {:.4g} up,", s.shift_x, s.shift_y);
 }
 
+std::string seat_words(const WalkSummary& s) {
+    std::string text;
+    if (s.seat.given)
+        text = fmt::format("{:g} cm wide at {:g} cm: {:.1f} x {:.1f} degrees", s.seat.screen_width_cm, s.seat.eye_distance_cm,
+                           s.seat.fov_x_deg, s.seat.fov_y_deg);
+    if (s.acuity_arcmin > 0)
+        text += fmt::format("{}the eye tells {:.3g} arcmin apart", text.empty() ? "" : "; ", s.acuity_arcmin);
+    return text;
+}
+
 std::string input_words(const InputSummary& in) {
     if (!in.given) return {};
     std::string text = counted(in.reports, "report", "reports");

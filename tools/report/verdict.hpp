@@ -20,6 +20,8 @@ std::string headline(const WalkSummary& summary);
 std::string control_words(const ControlSummary& control);
 /// ", off axis by 0.5 halves right, 0 up,"; empty for a symmetric projection.
 std::string off_axis_words(const WalkSummary& summary);
+/// The seat and what the eye tells apart; empty where neither is given.
+std::string seat_words(const WalkSummary& summary);
 /// The device, its latency, and its stops; empty if a path was followed.
 std::string input_words(const InputSummary& input);
 /// "sf-frame fifo 80 on 1; 2 llvmpipe- fifo 70 on 0-1".

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <numbers>
 
+#include "config/seat.hpp"
+
 namespace surefoot::walk {
 
 namespace {
@@ -72,6 +74,12 @@ Result<ChosenPath> choose_path(const std::string& requested, const std::string& 
     }
     for (PathSample& sample : chosen.path.samples) sample.pose.position.y += lift_m;
     return chosen;
+}
+
+void sit(const config::Settings& settings, Path& path) {
+    const auto seat = config::seat_of(settings);
+    if (!seat) return;
+    for (PathSample& sample : path.samples) sample.pose.fov_y_rad = seat->fov_y_rad;
 }
 
 }  // namespace surefoot::walk

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "config/settings.hpp"
 #include "render/model/model.hpp"
 #include "rt/base/path.hpp"
 #include "rt/base/random.hpp"
@@ -29,5 +30,8 @@ Pose random_pose(const Path& path, Random& random);
 
 /// 40 s: from above one corner, round the model once, closing in to its middle.
 Path generated_tour(const model::Model& model);
+
+/// Gives all poses the seat's field of view, if there is a seat. Start, viewpoints, tour and steered poses are of the path.
+void sit(const config::Settings& settings, Path& path);
 
 }  // namespace surefoot::walk

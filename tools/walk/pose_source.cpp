@@ -23,9 +23,6 @@ double angle_between(const Pose& a, const Pose& b) {
     return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(a.orientation, b.orientation))));
 }
 
-/// By how much a view is wider than another on any side, at most.
-double widened_rad(const Pose& view, const Pose& than) { return 2.0 * std::max(0.0, view.fov_y_rad - than.fov_y_rad); }
-
 /// A late frame may look a little past the next views.
 constexpr double margin_rad = 0.03;
 
@@ -48,7 +45,8 @@ FramePose PathPoses::sample(const FrameTime& time) {
     region.angle_rad = margin_rad;
     for (int i = first; i <= last; ++i) {
         const Pose next = pose_at(path_, now_s + i * period_s_);
-        region.angle_rad = std::max(region.angle_rad, angle_between(next, middle) + widened_rad(next, middle) + margin_rad);
+        region.angle_rad =
+            std::max(region.angle_rad, angle_between(next, middle) + model::widened_rad(next, middle, viewport_) + margin_rad);
     }
     region.angle_rad = std::min(region.angle_rad, 1.0);
     out.predicted = {true, region, glm::length(out.pose.position - out.before.position) / period_s_,

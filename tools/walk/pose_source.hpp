@@ -35,16 +35,18 @@ public:
     virtual bool latch(const FrameTime& time, FramePose& newest) = 0;
 };
 
-/// Poses of a recorded path, forwards and backwards in turn. Where the next frames look is known.
+/// Poses of a recorded path, forwards and backwards in turn. Where the next frames look, and how wide, is known.
 class PathPoses final : public PoseSource {
 public:
-    PathPoses(const Path& path, std::int64_t period_ns) : path_(path), period_s_(static_cast<double>(period_ns) * 1e-9) {}
+    PathPoses(const Path& path, std::int64_t period_ns, model::Viewport viewport = {})
+        : path_(path), period_s_(static_cast<double>(period_ns) * 1e-9), viewport_(viewport) {}
     FramePose sample(const FrameTime& time) override;
     bool latch(const FrameTime& /*time*/, FramePose& /*newest*/) override { return false; }
 
 private:
     const Path& path_;
     double period_s_;
+    model::Viewport viewport_;  ///< of the picture
 };
 
 }  // namespace surefoot::walk

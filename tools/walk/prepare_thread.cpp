@@ -24,7 +24,7 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, Re
 
 PrepareThread::PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
                              rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, RegionClip* clip,
-                             rt::Placement placement, bool shares_cores)
+                             rt::Placement placement, bool shares_cores, std::function<void()> delay)
     : engine_(engine),
       grid_(grid),
       poses_(poses),
@@ -32,6 +32,7 @@ PrepareThread::PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<Pos
       jump_poses_(jump_poses),
       clip_(clip),
       rhythm_(shares_cores ? 2 : 1, 1e-3 * static_cast<double>(grid.period_ns)),
+      delay_(std::move(delay)),
       placement_(std::move(placement)),
       thread_([this] { run(); }) {
     placed_.wait();
@@ -59,6 +60,7 @@ void PrepareThread::prepare_newest() {
         sample.predicted = {};
     }
     seen_ = sample.frame;
+    if (delay_) delay_();
     prepare_after(engine_, sample, period_s, clip_, prepared_.back());
     rhythm_.prepared(prepared_.back());
     if (jump) rhythm_.forget();  // its region is of a standing eye

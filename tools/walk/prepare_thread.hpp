@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <latch>
 #include <optional>
 #include <thread>
@@ -85,10 +86,10 @@ class PrepareThread {
 public:
     /// Start from a neutral thread; the thread is in its place when this returns. The buffers must outlive it. `jump_poses`: null
     /// if the eye never jumps; else it is read eight times a period. `clip`: null if nobody walks. shares_cores: with the
-    /// rasterisers.
+    /// rasterisers. delay: called before each set, by tests; may be empty.
     PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
                   rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, RegionClip* clip,
-                  rt::Placement placement, bool shares_cores);
+                  rt::Placement placement, bool shares_cores, std::function<void()> delay = {});
     ~PrepareThread();
     PrepareThread(const PrepareThread&) = delete;
     PrepareThread& operator=(const PrepareThread&) = delete;
@@ -108,6 +109,7 @@ private:
     RegionClip* clip_;
     PrepareRhythm rhythm_ GUARDED_BY(prepares_);
     std::uint64_t seen_ GUARDED_BY(prepares_) = ~0ULL;  ///< frame prepared after last
+    const std::function<void()> delay_;
     const rt::Placement placement_;
     std::optional<Error> misplaced_;  ///< written before placed_
     std::latch placed_{1};

@@ -10,6 +10,7 @@
 
 #include "rt/clock/clock.hpp"
 #include "rt/monitor/recorder.hpp"
+#include "rt/threads/usage.hpp"
 #include "tools/walk/control_proof.hpp"
 #include "tools/walk/prepare_thread.hpp"
 #include "tools/walk/walk_results.hpp"
@@ -116,9 +117,17 @@ void notify_screen(Session& s, const Progress& progress) {
     }
 }
 
+/// The kernel's steal of each core as it is now, beside what the frames' own clocks see.
+void read_core_steal(Session& s) {
+    const auto steal = rt::read_steal();
+    s.steal->read(rt::monotonic_ns(), steal ? std::span<const double>(steal->cpu_ms) : std::span<const double>());
+}
+
 /// While the frame thread walks: serves the input, reports progress, and counts the threads once all have started.
 void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, const Progress& progress) {
     bool counted = s.virtual_clock;
+    constexpr std::int64_t steal_every_ns = 95'000'000;  // so long do frames share a reading
+    std::int64_t steal_read_ns = 0;
     const int look_ms = s.virtual_clock ? 5 : s.input && s.input->live() ? 10 : 100;
     while (!done.load()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
@@ -127,6 +136,10 @@ void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, cons
         notify_input(s);
         if (s.may_be_prolonged && s.input->steered()) s.prolonged.store(true, std::memory_order_relaxed);
         notify_missed_frame(s);
+        if (s.steal && rt::monotonic_ns() - steal_read_ns >= steal_every_ns) {
+            steal_read_ns = rt::monotonic_ns();
+            read_core_steal(s);
+        }
         const double ran =
             s.virtual_clock ? 0.5 : static_cast<double>(clock.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
         progress.update("walk", share_done(s, ran));
@@ -153,14 +166,14 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     s.on_frame_core = on_frame_core(s.plan, s.rasterisers);
     const rt::FrameLoopOptions options = loop_options(s, progress);
 
-    PathPoses path_poses(s.path.path, s.grid.period_ns);
+    PathPoses path_poses(s.path.path, s.grid.period_ns, s.engine->options().device.viewport);
     if (s.input) s.input->begin(s.path.path, s.engine->model().ground, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
     std::unique_ptr<PrepareThread> preparing;
     JumpBuffer* jump_poses = s.input ? s.input->jump_poses() : nullptr;
     RegionClip* clip = s.input ? s.input->clip() : nullptr;
     if (!s.virtual_clock) {
         preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, jump_poses, clip,
-                                                    prepare_placement(s.plan), shared_cores(s) > 0);
+                                                    prepare_placement(s.plan), shared_cores(s) > 0, s.observer.inject_prepare);
         if (const auto& refused = preparing->misplaced())
             s.facts.degraded.push_back({rt::LackKind::placing, refused->what, refused->remedy});
     }
@@ -249,6 +262,14 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
         if (!request.endless) blocks.on_record(record);
         if (observer.on_record) observer.on_record(record);
     };
+    if (!s.virtual_clock) {
+        s.steal.emplace(s.rasterisers.empty() ? rt::CpuMask{s.plan.frame_core} : s.plan.all);
+        read_core_steal(s);  // before the first frame is due
+        recorder_options.on_batch = [&](std::span<rt::FrameRecord> records) {
+            read_core_steal(s);
+            s.steal->judge(records);
+        };
+    }
     rt::Recorder recorder(ring, recorder_options);
 
     const double steal_before = total_steal_ms();

@@ -81,9 +81,12 @@ struct WalkOutcome {
 /// The step of a walk. An Error of run_walk() belongs to the last notified step.
 enum class WalkStep : std::uint8_t { request, input, real_time, model, device, frames, ending };
 
-/// Faults for tests: called on the frame thread as each stage of a frame begins; what it does there delays that stage.
-enum class FramePhase : std::uint8_t { sample, select, submit, finish, present };
-enum class Fault : std::uint8_t { none, context_lost };
+/// Faults for tests: called on the frame thread as each stage of a frame begins; what it does there delays that stage. raster:
+/// the picture was handed to the rasterisers (real clock).
+enum class FramePhase : std::uint8_t { sample, select, submit, raster, finish, present };
+/// upload: what the hook did in `submit` was an upload. draw_again: in `raster`, the picture is drawn once more, and the hook is
+/// called again.
+enum class Fault : std::uint8_t { none, context_lost, upload, draw_again };
 using FaultHook = std::function<Fault(FramePhase, const rt::FrameRecord&)>;
 
 /// A display that takes the pictures in the device's place: of tests, to which it tells when it showed them. present() is called
@@ -114,6 +117,7 @@ struct WalkObserver {
     /// since the last call. Not for frames drawn from coarse levels, nor beside capture_file, nor of the largest models.
     std::function<void(const capture::Capture&)> on_missed_frame;
     FaultHook inject;
+    std::function<void()> inject_prepare;  ///< for tests: on sf-prepare before each set, which it delays (real clock)
     const TestDisplay* display = nullptr;  ///< real clock only; its refresh is a whole multiple of the rate
 };
 

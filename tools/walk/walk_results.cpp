@@ -5,13 +5,21 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <numbers>
 
+#include "config/seat.hpp"
 #include "render/capture/capture.hpp"
 #include "rt/base/file.hpp"
 #include "rt/base/text.hpp"
 #include "tools/walk/worst_forms.hpp"
 
 namespace surefoot::walk {
+
+namespace {
+
+constexpr double degrees_per_rad = 180 / std::numbers::pi;
+
+}  // namespace
 
 void fill_summary(const WalkRequest& request, const WalkFacts& facts, const PlacingPlan& plan, std::int64_t period_ns,
                   const std::string& path_source, const Engine& engine, WalkOutcome& outcome) {
@@ -28,6 +36,10 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
     s.height = request.height;
     s.shift_x = request.shift_x;
     s.shift_y = request.shift_y;
+    if (const auto seat = config::seat_of(request))
+        s.seat = {true, request.screen_width_cm, request.eye_distance_cm, seat->fov_x_rad * degrees_per_rad,
+                  seat->fov_y_rad * degrees_per_rad};
+    s.acuity_arcmin = config::acuity_rad(request) * 60 * degrees_per_rad;
     s.rate_hz = request.rate_hz;
     s.cost_scale = request.cost_scale;
     s.model_triangles = engine.model().triangles();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/seat.hpp"
 #include "render/gl/backends.hpp"
 #include "render/gl/kms_modes.hpp"
 #include "render/measure/calibrate.hpp"
@@ -115,6 +116,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);
     options.prepare.occlusion = r.occlusion;
     options.prepare.gestalt = r.gestalt;
+    options.prepare.acuity_rad = config::acuity_rad(r);
     options.selector = r.selector;
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);
@@ -123,6 +125,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     const bool may_choose = r.accuracy == 0 && r.selector == select::usual_selector;
     options.resolution = r.resolution_pct == 0 && !may_choose ? 1.0F : static_cast<float>(r.resolution_pct * 0.01);
     options.max_error_rad = r.min_accuracy > 0 ? 1.0 / r.min_accuracy : 0;
+    if (options.max_error_rad > 0) options.prepare.acuity_rad = std::min(options.prepare.acuity_rad, options.max_error_rad);
     options.in_frame_check = r.in_frame_check;
     options.benefit = r.benefit;
     options.rest_after_ms = r.rest_after_ms;
@@ -176,6 +179,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
         if (!path) return path.error();
         s.path = std::move(*path);
     }
+    sit(r, s.path.path);
 
     if (s.input && r.walking != rt::WalkingMode::fly) {
         if (model->ground.empty())
@@ -343,7 +347,7 @@ void warm_up(Session& s) {
     engine.device().release();
     // Ready for the first frame: a complete set for where the path begins, at a resolution that was compared with all others.
     const double period_s = period_us * 1e-6;
-    const FramePose first = PathPoses(s.path.path, s.grid.period_ns).sample({});
+    const FramePose first = PathPoses(s.path.path, s.grid.period_ns, engine.options().device.viewport).sample({});
     prepare::Region region = predict_region(first.before, first.pose, period_s, horizon_s(period_s));
     region.radius_m = std::max(region.radius_m, 0.5);
     region.angle_rad = std::max(region.angle_rad, 0.2);

@@ -13,6 +13,7 @@
 #include "rt/exchange/triple_buffer.hpp"
 #include "rt/frame/control.hpp"
 #include "rt/frame/loop.hpp"
+#include "rt/frame/steal_evidence.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/memory.hpp"
 #include "tools/walk/frame_share.hpp"
@@ -53,7 +54,8 @@ struct Session {
     std::atomic<bool> prolonged{false};       ///< somebody steers by the window: `frames` is no end any more
     std::unique_ptr<WindowThread> window;     ///< null without a window
     std::vector<pid_t> rasterisers;
-    std::vector<pid_t> on_frame_core;  ///< those of them that share the frame thread's core
+    std::vector<pid_t> on_frame_core;        ///< those of them that share the frame thread's core
+    std::optional<rt::StealEvidence> steal;  ///< real clock: what the host took of the frame's cores
     KeptFrame kept;
     rt::ControlSchedule control;
     std::int64_t burn_ns = 0;  ///< the control's

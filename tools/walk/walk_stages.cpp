@@ -60,10 +60,25 @@ WalkStages::WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock
       limit_(options.limit_us, static_cast<double>(options.period_ns) * 1e-3, options.shared_cores),
       virtual_clock_(options.request.clock == rt::ClockKind::virtual_time) {}
 
-void WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
-    if (options_.inject == nullptr) return;
+Fault WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
+    if (options_.inject == nullptr) return Fault::none;
     const Fault fault = (*options_.inject)(phase, record);
     if (fault == Fault::context_lost && options_.lost != nullptr) options_.lost->store(true);
+    return fault;
+}
+
+void WalkStages::inject_submit(rt::FrameRecord& record) const {
+    if (options_.inject == nullptr) return;
+    const std::int64_t from_ns = clock_.now_ns();
+    if (inject(FramePhase::submit, record) == Fault::upload) record.upload_ns += clock_.now_ns() - from_ns;
+}
+
+/// Real work for the rasterisers, for as long as the fault wants it.
+void WalkStages::inject_raster(const rt::FrameRecord& record, std::int64_t begun_ns) {
+    while (inject(FramePhase::raster, record) == Fault::draw_again) {
+        engine_.draw_unbudgeted(now_.pose, engine_.drawn());
+        report_.finished_us = static_cast<double>(clock_.now_ns() - begun_ns) * 1e-3;
+    }
 }
 
 Correction WalkStages::correction_at(float resolution, bool filtered) const {
@@ -275,7 +290,7 @@ void WalkStages::keep(const rt::FrameRecord& record) {
 }
 
 void WalkStages::submit(rt::FrameRecord& record) {
-    inject(FramePhase::submit, record);
+    inject_submit(record);
     latch(record);
     SubmitLimits limits = frame_limits();
     const std::int64_t begun_ns = clock_.now_ns();
@@ -287,6 +302,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
     }
     time_left_us_ = limits.limit_us - limits.elapsed_us;
     report_ = engine_.submit(now_.pose, limits);
+    if (!virtual_clock_) inject_raster(record, begun_ns);
     engine_.device().draws.plays();
     if (engine_.device().lost() && options_.lost != nullptr) options_.lost->store(true);
     if (virtual_clock_) {

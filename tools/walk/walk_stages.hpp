@@ -86,7 +86,9 @@ public:
     void shown_late(const rt::FrameRecord& record) override;
 
 private:
-    void inject(FramePhase phase, const rt::FrameRecord& record) const;
+    Fault inject(FramePhase phase, const rt::FrameRecord& record) const;
+    void inject_submit(rt::FrameRecord& record) const;
+    void inject_raster(const rt::FrameRecord& record, std::int64_t begun_ns);
     void prepare_inline();
     [[nodiscard]] PrepareHints hints() const;
     void publish_rehearsed(const FramePose& newest, std::int64_t due_ns);

@@ -1,5 +1,5 @@
-// Frames of a known make, into which every cause of a miss can be injected for real: by spinning, sleeping, faulting, a blocker
-// of higher priority on the same core, or a stop of the whole process.
+// Injects every cause of a miss for real into the frames of a walk: by spinning, sleeping, faulting, drawing again, a late set, a
+// blocker of higher priority on the same core, or a stop of the whole process.
 #pragma once
 
 #include <semaphore.h>
@@ -13,12 +13,14 @@
 #include <atomic>
 #include <csignal>
 #include <cstdint>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "rt/clock/clock.hpp"
-#include "rt/frame/loop.hpp"
+#include "rt/frame/record.hpp"
 #include "rt/threads/placement.hpp"
+#include "tools/walk/walk.hpp"
 
 namespace surefoot::bench {
 
@@ -124,7 +126,7 @@ private:
 /// Memory that the kernel gives anew, page by page, at the first touch of each.
 class FreshPages {
 public:
-    static constexpr std::size_t bytes = 256U << 20U, page = 4096;
+    static constexpr std::size_t bytes = 768U << 20U, page = 4096;  // 200 000 faults: 50 ms at least
     FreshPages() {
         void* const mapped = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         memory_ = mapped == MAP_FAILED ? nullptr : static_cast<unsigned char*>(mapped);
@@ -136,7 +138,10 @@ public:
     FreshPages(const FreshPages&) = delete;
     FreshPages& operator=(const FreshPages&) = delete;
     /// Not in a frame: it takes its time.
-    void renew() const { madvise(memory_, bytes, MADV_DONTNEED); }
+    void renew() const {
+        munlock(memory_, bytes);  // a walk locks all memory that it finds
+        madvise(memory_, bytes, MADV_DONTNEED);
+    }
     void fault_until(std::int64_t until_ns) const {
         const rt::RealClock clock;
         for (std::size_t at = 0; at < bytes && clock.now_ns() < until_ns; at += page)
@@ -147,53 +152,60 @@ private:
     unsigned char* memory_ = nullptr;
 };
 
-constexpr std::uint64_t frames_apart = 6;  ///< from one injection to the next
-
-/// At 60 Hz a frame takes about 7 of its 16.7 ms. Every frames_apart frames one takes 14 to 30 ms more, by one cause.
-class BlameStages final : public rt::FrameStages {
+/// Injects one cause into the frames of a walk. Every so many frames one takes 20 to 36 ms more. All members but seen() and
+/// delay_preparing() belong to the frame thread.
+class Injector {
 public:
-    /// Wants `wanted` frames that missed by the cause.
-    BlameStages(rt::Cause cause, int wanted, int frame_core, Helper& rasteriser, Stopper& stopper);
+    static constexpr std::size_t max_frames = 60'000;
 
-    void sample(rt::FrameRecord& record) override;
-    void select(rt::FrameRecord& record) override;
-    void submit(rt::FrameRecord& record) override;
-    void finish(rt::FrameRecord& record) override;
-    void account(rt::FrameRecord& record) override;
-    rt::Shown present(rt::FrameRecord& record) override;
-    void shown_late(const rt::FrameRecord& record) override;
-    [[nodiscard]] static bool injected(std::uint64_t frame) { return frame % frames_apart == frames_apart / 2; }
-    /// An injection that was carried out and made its frame miss.
-    [[nodiscard]] static bool counts(const rt::FrameRecord& record) {
-        return injected(record.frame) && record.frame >= 2 * frames_apart && record.missed && record.candidates != 0;
-    }
-    /// Injected frames that the host stole from as well, by its own account (/proc/stat, in steps of 10 ms): they had two causes,
-    /// and which took more nobody knows.
-    [[nodiscard]] const std::vector<std::uint64_t>& two_causes() const { return two_causes_; }
-    /// Set as soon as the wanted number is there.
+    /// Wants `wanted` frames that missed by the cause.
+    Injector(rt::Cause cause, int wanted, std::int64_t period_ns, int frame_core, Stopper& stopper);
+
+    walk::Fault at(walk::FramePhase phase, const rt::FrameRecord& record);
+    /// On the prepare thread: falls behind when a set is to grow too old.
+    void delay_preparing();
+    /// On the monitor thread. Ends the walk once enough frames have missed.
+    void seen(const rt::FrameRecord& record);
+
+    /// After the walk: whether the injection was carried out in this frame.
+    [[nodiscard]] bool injected(std::uint64_t frame) const { return frame < max_frames && marks_[frame].carried_out; }
+    /// The host stole while it ran as well, by its own account (/proc/stat, in steps of 10 ms): it had two causes, and nobody
+    /// knows which took more.
+    [[nodiscard]] bool has_two_causes(std::uint64_t frame) const { return marks_[frame].stolen_too; }
     [[nodiscard]] const std::atomic<bool>& enough() const { return enough_; }
     [[nodiscard]] bool blocked() const { return !blocker_.misplaced(); }
 
 private:
+    struct Mark {
+        std::atomic<bool> carried_out{false}, stolen_too{false};
+    };
+    void begin(const rt::FrameRecord& record);
+    void in_select(const rt::FrameRecord& record);
+    walk::Fault in_submit(const rt::FrameRecord& record);
+    walk::Fault in_raster(const rt::FrameRecord& record);
+    void in_present(const rt::FrameRecord& record);
+    void carried_out(const rt::FrameRecord& record);
+    [[nodiscard]] bool planned(std::uint64_t frame) const;
     [[nodiscard]] bool now(const rt::FrameRecord& record, rt::Cause cause) const {
-        return cause_ == cause && injected(record.frame);
+        return cause_ == cause && planned(record.frame);
     }
     [[nodiscard]] std::int64_t extra_ns(std::uint64_t frame) const;
     bool stopped_for(std::int64_t ns);
-    void count(std::uint64_t frame);
 
     rt::Cause cause_;
     int wanted_;
-    std::atomic<bool> enough_{false};
-    std::vector<std::uint64_t> two_causes_;
-    double stolen_before_ms_ = 0;
-    Helper& rasteriser_;
+    std::int64_t period_ns_;
+    std::uint64_t frames_apart_;  ///< from one injection to the next
     Stopper& stopper_;
-    Helper blocker_;  ///< above the frame thread, on its core
-    FreshPages pages_;
+    Helper blocker_;                   ///< above the frame thread, on its core
+    std::optional<FreshPages> pages_;  ///< for page faults
     rt::RealClock clock_;
-    std::uint64_t newest_set_ = 0;  ///< frame of the newest prepared set
-    bool blocking_ = false;
+    std::vector<Mark> marks_;  ///< by frame
+    double steal_before_ms_ = 0;
+    std::int64_t drawing_since_ns_ = 0;
+    bool blocking_ = false, stalls_ = false;
+    std::atomic<bool> stall_{false}, enough_{false};
+    int missed_ = 0;  ///< of the monitor thread
 };
 
 }  // namespace surefoot::bench
