@@ -51,8 +51,9 @@ constexpr Entry text(string_view key, string_view help, std::string S::*member) 
 
 /// The screen of the kms back end.
 std::vector<Entry> screen_entries() {
-    Entry rotation = integer("rotation", "degrees", rotations.front(), rotations.back(),
-                             "How that screen is turned; a card may refuse 90 and 270.", &S::rotation_deg);
+    Entry rotation =
+        integer("rotation", "degrees", rotations.front(), rotations.back(),
+                "By how much pictures are turned there, anticlockwise; a card may refuse 90 and 270.", &S::rotation_deg);
     rotation.only = rotations;
     return {
         text("screen", "Screen without a window system, by its connector: \"HDMI-A-1\"; \"\": the first that is connected.",

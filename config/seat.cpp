@@ -26,8 +26,9 @@ std::optional<Seat> seat_of(const Settings& s) {
 
 double acuity_rad(const Settings& s) {
     constexpr double arcmin_per_rad = 60 * degrees;
-    if (s.acuity_arcmin > 0) return s.acuity_arcmin / arcmin_per_rad;
-    return seat_of(s) ? usual_acuity_arcmin / arcmin_per_rad : 0;
+    const double arcmin = s.acuity_arcmin > 0 ? s.acuity_arcmin : seat_of(s) ? usual_acuity_arcmin : 0;
+    const double acuity = arcmin / arcmin_per_rad;
+    return s.min_accuracy > 0 ? std::min(acuity, 1 / s.min_accuracy) : acuity;
 }
 
 std::string seat_text(const Seat& seat) {

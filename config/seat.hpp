@@ -18,7 +18,8 @@ struct Seat {
 /// Nothing where a length is not given: then poses bring their own field of view.
 std::optional<Seat> seat_of(const Settings& settings);
 
-/// The angle that the eye can tell apart, rad; 0: unknown, so pixels decide. With a seat it is one arcminute if not given.
+/// The angle that the eye can tell apart, rad; 0: unknown, so pixels decide. With a seat it is one arcminute if not given. A
+/// guaranteed accuracy may ask for less.
 /// Source of that: Selcuk 1997, section 2.1.
 double acuity_rad(const Settings& settings);
 

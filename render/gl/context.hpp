@@ -37,6 +37,7 @@ public:
     /// Device::refreshes(), watch_screen() and the screen's part of lost().
     [[nodiscard]] virtual rt::Refreshes refreshes() const { return {0, 0}; }
     virtual std::vector<std::string> watch_screen() { return {}; }
+    virtual void wait_for_flips(bool /*wait*/) {}
     [[nodiscard]] virtual bool lost() const { return false; }
 };
 

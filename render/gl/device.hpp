@@ -59,10 +59,11 @@ enum class Parts : std::uint8_t { all, opaque, blended };
 
 /// The screen of the kms back end.
 struct ScreenOptions {
-    std::string name;      ///< of the connector, "HDMI-A-1"; empty: the first that is connected
-    std::string mode;      ///< "1920x1080@60"; empty: the one that the screen prefers
-    int rotation_deg = 0;  ///< 0, 90, 180 or 270
-    /// Called twice a second while the screen cannot be had. held: another program has it. True: wait on. Empty: never wait.
+    std::string name;           ///< of the connector, "HDMI-A-1"; empty: the first that is connected
+    std::string mode;           ///< "1920x1080@60"; empty: the one that the screen prefers
+    int rotation_deg = 0;       ///< 0, 90, 180 or 270
+    bool keyboard_off = false;  ///< of the text console below
+    /// Called every second while the screen cannot be had. held: another program has it. True: wait on. Empty: never wait.
     std::function<bool(const Error& why, bool held)> on_wait{};
     /// Software renderers draw into buffers of GBM too. For tests: they crash where the card goes away.
     bool software_by_gbm = false;
@@ -132,6 +133,8 @@ public:
 
     /// The display's refreshes, where it counts and stamps them; elsewhere the period is 0.
     [[nodiscard]] virtual rt::Refreshes refreshes() const { return {0, 0}; }
+    /// Whether present() waits until a screen shows the picture. It does at first; before the first frame.
+    virtual void wait_for_flips(bool /*wait*/) {}
     /// What became of the screen since the last call, a line each. A few times a second, on a thread that does not draw.
     virtual std::vector<std::string> watch_screen() { return {}; }
 

@@ -55,6 +55,7 @@ public:
     rt::Shown present() override REQUIRES(draws);
     [[nodiscard]] rt::Refreshes refreshes() const override { return context_->refreshes(); }
     std::vector<std::string> watch_screen() override { return context_->watch_screen(); }
+    void wait_for_flips(bool wait) override { context_->wait_for_flips(wait); }
     [[nodiscard]] FrameStats stats() const override REQUIRES(draws) { return stats_; }
     [[nodiscard]] bool lost() const override REQUIRES(draws) { return lost_; }
     Result<PixelImage> read_pixels() override REQUIRES(draws);

@@ -45,7 +45,8 @@ void GlDevice::copy_to_window(const FittedPicture& fit, bool half_turn) {
     const auto width = static_cast<GLint>(options_.viewport.width), height = static_cast<GLint>(options_.viewport.height);
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_.steps.front().framebuffer);
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    if (fit.x > 0 || fit.y > 0) {
+    const Surface surface = context_->surface();
+    if (static_cast<std::uint32_t>(fit.width) < surface.width || static_cast<std::uint32_t>(fit.height) < surface.height) {
         gl_.ClearColor(0, 0, 0, 1);
         gl_.Clear(GL_COLOR_BUFFER_BIT);
     }

@@ -7,7 +7,9 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -32,8 +34,8 @@ struct OpenScreen {
     Drm drm;
     std::unique_ptr<KmsCard> card;
     std::unique_ptr<KmsScreen> screen;
-    GraphicsConsole console;
-    Surface surface;  ///< of its buffers
+    std::optional<GraphicsConsole> console;  ///< once the card is ours
+    Surface surface;                         ///< of its buffers
     std::string name;
 };
 
@@ -45,7 +47,8 @@ public:
     ~GbmContext() override {
         for (const Known& known : known_)
             if (known.buffer != 0) screen_->card->remove_buffer(known.buffer);
-        if (shown_ != nullptr) gbm_.ReleaseBuffer(gbm_surface_, shown_);  // before its surface of EGL is gone
+        for (gbm_bo* kept : {older_, newer_})
+            if (kept != nullptr) gbm_.ReleaseBuffer(gbm_surface_, kept);  // before its surface of EGL is gone
         destroy();
         egl_.Terminate(display_);
         if (gbm_surface_ != nullptr) gbm_.DestroySurface(gbm_surface_);
@@ -77,14 +80,18 @@ public:
         gbm_bo* drawn = gbm_.LockFrontBuffer(gbm_surface_);
         if (drawn == nullptr) return {};
         const rt::Shown shown = screen_->screen->present(buffer_of(drawn));
-        const bool on_screen = shown.by != rt::ShownBy::nothing;
-        gbm_bo*& done = on_screen ? shown_ : drawn;  // what is on the screen stays there if this one is not
-        if (done != nullptr) gbm_.ReleaseBuffer(gbm_surface_, done);
-        if (on_screen) shown_ = drawn;
+        if (shown.by == rt::ShownBy::nothing) {
+            gbm_.ReleaseBuffer(gbm_surface_, drawn);  // what is on the screen stays there
+            return shown;
+        }
+        // Of the two before this one, the older is on the screen no more.
+        if (older_ != nullptr) gbm_.ReleaseBuffer(gbm_surface_, older_);
+        older_ = std::exchange(newer_, drawn);
         return shown;
     }
     [[nodiscard]] rt::Refreshes refreshes() const override { return screen_->card->refreshes(); }
     std::vector<std::string> watch_screen() override { return screen_->screen->watch(); }
+    void wait_for_flips(bool wait) override { screen_->screen->wait_for_flips(wait); }
     [[nodiscard]] bool lost() const override { return screen_->screen->state() == ScreenState::gone; }
 
 private:
@@ -126,11 +133,12 @@ private:
     gbm_device* device_;
     std::unique_ptr<OpenScreen> screen_;
     gbm_surface* gbm_surface_ = nullptr;
-    gbm_bo* shown_ = nullptr;
+    gbm_bo *newer_ = nullptr, *older_ = nullptr;  ///< the last two that were queued: one is on the screen, one may be waiting
     std::array<Known, 8> known_{};
 };
 
-/// Two plain buffers of the card, mapped. Pictures are drawn elsewhere and copied there.
+/// Three plain buffers of the card, mapped: one on the screen, one that waits for its refresh, one to fill. Pictures are drawn
+/// elsewhere and copied there.
 class PlainContext final : public Context {
 public:
     PlainContext(std::unique_ptr<Context> drawing, std::unique_ptr<OpenScreen> screen)
@@ -164,11 +172,12 @@ public:
     }
     rt::Shown present() override {
         const rt::Shown shown = screen_->screen->present(plain_[hidden_].buffer);
-        if (shown.by != rt::ShownBy::nothing) hidden_ = 1 - hidden_;
+        if (shown.by != rt::ShownBy::nothing) hidden_ = (hidden_ + 1) % plain_.size();
         return shown;
     }
     [[nodiscard]] rt::Refreshes refreshes() const override { return screen_->card->refreshes(); }
     std::vector<std::string> watch_screen() override { return screen_->screen->watch(); }
+    void wait_for_flips(bool wait) override { screen_->screen->wait_for_flips(wait); }
     [[nodiscard]] bool lost() const override { return screen_->screen->state() == ScreenState::gone; }
 
 private:
@@ -205,8 +214,8 @@ private:
 
     std::unique_ptr<Context> drawing_;
     std::unique_ptr<OpenScreen> screen_;
-    std::array<Plain, 2> plain_{};
-    std::size_t hidden_ = 0;  ///< the buffer that is not on the screen
+    std::array<Plain, 3> plain_{};
+    std::size_t hidden_ = 0;  ///< the buffer to fill
 };
 
 /// One try. `held`: another program has the card.
@@ -226,13 +235,17 @@ Result<std::unique_ptr<OpenScreen>> try_screen(const Drm& drm, const ScreenOptio
     open->name = (*chosen)->name;
     const bool swapped = options.rotation_deg == 90 || options.rotation_deg == 270;
     open->surface = {swapped ? mode->height : mode->width, swapped ? mode->width : mode->height,
-                     options.rotation_deg == 180 && !open->card->rotates()};
-    if (open->card->take() != 0) {
-        held = true;
+                     options.rotation_deg == 180 && !open->card->turns()};
+    if (const int error = open->card->take(); error != 0) {
+        held = error == EBUSY || error == EACCES || error == EPERM;
+        if (!held)
+            return Error{"screen " + open->name, std::string("The card cannot be had: ") + std::strerror(error),
+                         "See the kernel's log", ErrorKind::no_device};
         const std::string holders = open->card->holders();
         return Error{"screen " + open->name, "Another program holds it" + (holders.empty() ? std::string() : ": " + holders),
                      "End that program, or run it on another card", ErrorKind::no_device};
     }
+    open->console.emplace(options.keyboard_off);
     open->screen = std::make_unique<KmsScreen>(*open->card, open->name, mode->refresh_ns, monotonic_ns);
     return open;
 }
@@ -244,7 +257,7 @@ Result<std::unique_ptr<OpenScreen>> wait_for_screen(const Drm& drm, const Screen
         bool held = false;
         auto open = try_screen(drm, options, *request, held);
         if (open || !options.on_wait || !options.on_wait(open.error(), held)) return open;
-        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        std::this_thread::sleep_for(std::chrono::seconds(1));  // each try asks all screens
     }
 }
 

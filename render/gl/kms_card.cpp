@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -29,12 +30,18 @@ bool timings_of(const drmModeConnector& connector, const ScreenMode& mode, drmMo
     for (int i = 0; i < connector.count_modes; ++i) {
         const ScreenMode one = mode_of(connector.modes[i], static_cast<std::uint32_t>(i));
         if (one.width != mode.width || one.height != mode.height || one.interlaced != mode.interlaced ||
-            std::abs(one.refresh_ns - mode.refresh_ns) > mode.refresh_ns / 1000)
+            one.refresh_ns != mode.refresh_ns)  // 60 and 59.94 Hz are two modes
             continue;
         out = connector.modes[i];
         return true;
     }
     return false;
+}
+
+std::int64_t card_now_ns() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
 std::uint64_t turn_of(int rotation_deg) {
@@ -89,9 +96,39 @@ std::uint64_t KmsCard::property_value(std::uint32_t object, std::uint32_t type, 
     return value;
 }
 
+/// Picture generators that show on other connectors now.
+std::vector<std::uint32_t> KmsCard::crtcs_of_others() const {
+    std::vector<std::uint32_t> taken;
+    drmModeRes* resources = drm_.GetResources(file_);
+    for (int i = 0; resources != nullptr && i < resources->count_connectors; ++i) {
+        if (resources->connectors[i] == screen_.connector) continue;
+        drmModeConnector* other = drm_.GetConnectorCurrent(file_, resources->connectors[i]);
+        if (other == nullptr) continue;
+        drmModeEncoder* encoder = other->encoder_id != 0 ? drm_.GetEncoder(file_, other->encoder_id) : nullptr;
+        if (encoder != nullptr) {
+            if (encoder->crtc_id != 0) taken.push_back(encoder->crtc_id);
+            drm_.FreeEncoder(encoder);
+        }
+        drm_.FreeConnector(other);
+    }
+    if (resources != nullptr) drm_.FreeResources(resources);
+    return taken;
+}
+
+/// Bits of the plane's property `rotation` that it offers; 0: it has none.
+std::uint64_t KmsCard::offered_rotations() const {
+    std::uint64_t bits = 0;
+    drmModePropertyRes* rotation = plane_.rotation != 0 ? drm_.GetProperty(file_, plane_.rotation) : nullptr;
+    if (rotation == nullptr) return 0;
+    for (int i = 0; i < rotation->count_enums; ++i) bits |= std::uint64_t{1} << (rotation->enums[i].value & 63U);
+    drm_.FreeProperty(rotation);
+    return bits;
+}
+
 Result<void> KmsCard::find_crtc() {
     const Error none{"screen " + screen_.name, "The card has no free picture generator (CRTC) for it", "Unplug another screen",
                      ErrorKind::no_device};
+    const std::vector<std::uint32_t> taken = crtcs_of_others();
     drmModeRes* resources = drm_.GetResources(file_);
     drmModeConnector* connector = drm_.GetConnectorCurrent(file_, screen_.connector);
     if (resources != nullptr && connector != nullptr) {
@@ -104,7 +141,8 @@ Result<void> KmsCard::find_crtc() {
             drm_.FreeEncoder(encoder);
         }
         for (int i = 0; i < resources->count_crtcs; ++i) {
-            if ((reachable & (1U << static_cast<unsigned>(i))) == 0) continue;
+            const bool free = std::ranges::find(taken, resources->crtcs[i]) == taken.end();
+            if ((reachable & (1U << static_cast<unsigned>(i))) == 0 || !free) continue;
             if (crtc_.id == 0 || resources->crtcs[i] == driven_by) {
                 crtc_.id = resources->crtcs[i];
                 crtc_.index = static_cast<std::uint32_t>(i);
@@ -147,7 +185,9 @@ Result<void> KmsCard::find_planes(int rotation_deg) {
     if (!complete)
         return Error{"screen " + screen_.name, "The card has no primary plane for it", "Use an X server and --backend window",
                      ErrorKind::unsupported};
-    if (rotation_deg != 0) plane_.rotation = property(plane_.id, plane_type, "rotation");
+    plane_.rotation = property(plane_.id, plane_type, "rotation");
+    turns_ = rotation_deg == 0 || (offered_rotations() & turn_of(rotation_deg)) != 0;
+    turned_ = turns_ ? turn_of(rotation_deg) : DRM_MODE_ROTATE_0;
     return {};
 }
 
@@ -158,8 +198,10 @@ Result<void> KmsCard::find_objects(int rotation_deg) {
     crtc_.active = property(crtc_.id, crtc_type, "ACTIVE");
     connector_crtc_ = property(screen_.connector, connector_type, "CRTC_ID");
     swaps_sides_ = rotation_deg == 90 || rotation_deg == 270;
-    turned_ = turn_of(rotation_deg);
-    if (swaps_sides_ && plane_.rotation == 0)
+    link_status_ = property(screen_.connector, connector_type, "link-status");
+    constexpr std::array adjustments{"GAMMA_LUT", "DEGAMMA_LUT", "CTM", "VRR_ENABLED"};
+    for (std::size_t i = 0; i < adjustments.size(); ++i) adjustments_[i] = property(crtc_.id, crtc_type, adjustments[i]);
+    if (swaps_sides_ && !turns_)
         return Error{"rotation", fmt::format("This card cannot turn pictures by {} degrees", rotation_deg), "Use 0 or 180",
                      ErrorKind::unsupported};
     if (drm_.CreatePropertyBlob(file_, &timings_, sizeof timings_, &mode_blob_) != 0 || crtc_.mode == 0 || crtc_.active == 0 ||
@@ -200,6 +242,9 @@ bool KmsCard::add_to(drmModeAtomicReq* request, ShownBuffer buffer) const {
     add(screen_.connector, connector_crtc_, crtc_.id);
     add(crtc_.id, crtc_.mode, mode_blob_);
     add(crtc_.id, crtc_.active, 1);
+    if (link_status_ != 0) add(screen_.connector, link_status_, DRM_MODE_LINK_STATUS_GOOD);
+    for (const std::uint32_t adjustment : adjustments_)  // none of another program's stays
+        if (adjustment != 0) add(crtc_.id, adjustment, 0);
     const std::uint64_t width = timings_.hdisplay, height = timings_.vdisplay;
     const std::array<std::uint64_t, 4> source{0, 0, (swaps_sides_ ? height : width) << 16U,
                                               (swaps_sides_ ? width : height) << 16U};
@@ -241,17 +286,25 @@ int KmsCard::flip(ShownBuffer buffer) {
     commit.count_props_ptr = reinterpret_cast<std::uintptr_t>(&count);
     commit.props_ptr = reinterpret_cast<std::uintptr_t>(&name);
     commit.prop_values_ptr = reinterpret_cast<std::uintptr_t>(&value);
-    commit.user_data = ++flips_;
-    return drm_.Ioctl(file_, DRM_IOCTL_MODE_ATOMIC, &commit) == 0 ? 0 : errno;
+    commit.user_data = flips_ + 1;
+    if (drm_.Ioctl(file_, DRM_IOCTL_MODE_ATOMIC, &commit) != 0) return errno;
+    ++flips_;
+    return 0;
 }
 
-/// The event of the last flip. Those of flips that were given up may come before it.
+/// The event of the last flip. Those of flips that were given up may come before it, and signals too.
 Flip KmsCard::wait_flip(std::int64_t timeout_ns) {
-    timespec wait{static_cast<time_t>(timeout_ns / 1'000'000'000), static_cast<long>(timeout_ns % 1'000'000'000)};
-    pollfd readable{file_, POLLIN, 0};
-    while (::ppoll(&readable, 1, &wait, nullptr) > 0) {
+    const std::int64_t until_ns = card_now_ns() + timeout_ns;
+    while (true) {
+        const std::int64_t left_ns = std::max<std::int64_t>(0, until_ns - card_now_ns());
+        const timespec wait{static_cast<time_t>(left_ns / 1'000'000'000), static_cast<long>(left_ns % 1'000'000'000)};
+        pollfd readable{file_, POLLIN, 0};
+        const int ready = ::ppoll(&readable, 1, &wait, nullptr);
+        if (ready < 0 && errno == EINTR) continue;
+        if (ready <= 0) return {};
         alignas(drm_event_vblank) std::array<char, 1024> events;
         const ssize_t size = ::read(file_, events.data(), events.size());
+        if (size <= 0 && errno != EAGAIN && errno != EINTR) return {};
         for (ssize_t at = 0; at + static_cast<ssize_t>(sizeof(drm_event)) <= size;) {
             drm_event event{};
             std::memcpy(&event, events.data() + at, sizeof event);
@@ -264,9 +317,17 @@ Flip KmsCard::wait_flip(std::int64_t timeout_ns) {
             }
             at += event.length;
         }
-        if (size <= 0 && errno != EAGAIN && errno != EINTR) break;
     }
-    return {};
+}
+
+bool KmsCard::link_failed() {
+    std::uint64_t status = DRM_MODE_LINK_STATUS_GOOD;
+    drmModeObjectProperties* all =
+        link_status_ != 0 ? drm_.ObjectGetProperties(file_, screen_.connector, connector_type) : nullptr;
+    for (std::uint32_t i = 0; all != nullptr && i < all->count_props; ++i)
+        if (all->props[i] == link_status_) status = all->prop_values[i];
+    if (all != nullptr) drm_.FreeObjectProperties(all);
+    return status == DRM_MODE_LINK_STATUS_BAD;
 }
 
 bool KmsCard::connected(bool probe) {

@@ -25,8 +25,8 @@ public:
     [[nodiscard]] int file() const { return file_; }
     /// The refreshes of its mode; one of them where the card counts them.
     [[nodiscard]] rt::Refreshes refreshes() const;
-    /// The plane turns pictures. Where it cannot, a half turn is left to who draws.
-    [[nodiscard]] bool rotates() const { return plane_.rotation != 0; }
+    /// The plane turns pictures as wanted. Where it cannot, a half turn is left to who draws.
+    [[nodiscard]] bool turns() const { return turns_; }
 
     /// An id for a buffer of the mode's size (turned, where the plane turns it); 0 and an errno in `error` where the card
     /// refuses.
@@ -40,6 +40,7 @@ public:
     [[nodiscard]] bool counts_refreshes() const override { return counts_refreshes_; }
     bool connected(bool probe) override;
     bool has_mode() override;
+    bool link_failed() override;
     std::string holders() override;
 
 private:
@@ -55,6 +56,8 @@ private:
 
     Result<void> find_objects(int rotation_deg);
     Result<void> find_crtc();
+    [[nodiscard]] std::vector<std::uint32_t> crtcs_of_others() const;
+    [[nodiscard]] std::uint64_t offered_rotations() const;
     Result<void> find_planes(int rotation_deg);
     [[nodiscard]] std::uint32_t property(std::uint32_t object, std::uint32_t type, const char* name) const;
     [[nodiscard]] std::uint64_t property_value(std::uint32_t object, std::uint32_t type, const char* name) const;
@@ -70,7 +73,9 @@ private:
     std::vector<Plane> other_planes_;   ///< of this CRTC: a pointer, overlays
     std::uint32_t connector_crtc_ = 0;  ///< a property
     std::uint64_t turned_ = 0;          ///< of the plane's rotation
-    bool swaps_sides_ = false;
+    bool turns_ = true, swaps_sides_ = false;
+    std::uint32_t link_status_ = 0;               ///< of the connector
+    std::array<std::uint32_t, 4> adjustments_{};  ///< of the CRTC: colours and a variable rate
     std::uint32_t mode_blob_ = 0;
     bool counts_refreshes_ = false;
     std::uint64_t flips_ = 0;

@@ -10,7 +10,7 @@
 
 namespace surefoot::gl {
 
-GraphicsConsole::GraphicsConsole() {
+GraphicsConsole::GraphicsConsole(bool keyboard_off) {
     // Standard input is the console of a service that was given one; a shell's programs may have it redirected.
     for (const int file : {::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0), ::open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY)}) {
         const bool taken =
@@ -20,10 +20,13 @@ GraphicsConsole::GraphicsConsole() {
         else if (file >= 0)
             ::close(file);
     }
+    if (keyboard_off && file_ >= 0 && ::ioctl(file_, KDGKBMODE, &keyboard_before_) == 0)
+        keyboard_off_ = ::ioctl(file_, KDSKBMODE, K_OFF) == 0;
 }
 
 GraphicsConsole::~GraphicsConsole() {
     if (file_ < 0) return;
+    if (keyboard_off_) ::ioctl(file_, KDSKBMODE, keyboard_before_);
     ::ioctl(file_, KDSETMODE, mode_before_);
     ::close(file_);
 }

@@ -35,7 +35,7 @@ std::optional<bool> counts_refreshes(const Drm& drm, int file, const drmModeConn
     drm.FreeEncoder(encoder);
     std::uint64_t sequence = 0, time_ns = 0;
     if (crtc == 0) return std::nullopt;
-    if (drm.CrtcGetSequence(file, crtc, &sequence, &time_ns) == 0) return true;
+    if (drm.CrtcGetSequence(file, crtc, &sequence, &time_ns) == 0) return time_ns != 0;
     return errno == EOPNOTSUPP ? std::optional(false) : std::nullopt;
 }
 

@@ -45,6 +45,7 @@ rt::Shown KmsScreen::present(ShownBuffer buffer) {
 
 /// Nothing that another program set may be relied on, so the whole mode is set.
 rt::Shown KmsScreen::set_mode(ShownBuffer buffer) {
+    in_flight_ = false;
     if (const int error = port_.take(); error != 0) return fail(error);
     if (const int error = port_.set_mode(buffer); error != 0) return fail(error);
     state_.store(ScreenState::showing, std::memory_order_relaxed);
@@ -53,13 +54,18 @@ rt::Shown KmsScreen::set_mode(ShownBuffer buffer) {
 
 rt::Shown KmsScreen::flip(ShownBuffer buffer) {
     const std::int64_t wait_ns = std::max(3 * refresh_ns_, min_flip_wait_ns);
+    if (std::exchange(in_flight_, false) && !port_.wait_flip(wait_ns).done) return fail(ETIME);
     int error = port_.flip(buffer);
-    if (error == EBUSY) {  // a flip that was given up has come late
+    if (error == EBUSY) {  // the flip before has not been shown yet
         (void)port_.wait_flip(wait_ns);
         error = port_.flip(buffer);
     }
     if (error == EBUSY) error = ETIME;  // not another program: that is EACCES here
     if (error != 0) return fail(error);
+    if (!waits_) {
+        in_flight_ = true;
+        return {rt::ShownBy::hand_over, 0, 0};
+    }
     const std::int64_t queued_ns = now_ns_();
     const Flip shown = port_.wait_flip(wait_ns);
     if (!shown.done) return fail(ETIME);
@@ -120,6 +126,11 @@ void KmsScreen::watch_plug(std::vector<std::string>& lines) {
     const bool probe = now - probed_ns_ >= probe_every_ns || !plugged_;
     if (probe) probed_ns_ = now;
     const bool plugged = port_.connected(probe);
+    if (plugged && plugged_ && now - link_ns_ >= probe_every_ns && port_.link_failed()) {
+        link_ns_ = now;
+        lines.push_back(fmt::format("screen {}: Its link failed, so its mode is set.", name_));
+        set_anew_.store(true, std::memory_order_relaxed);
+    }
     if (plugged == plugged_) return;
     plugged_ = plugged;
     if (!plugged) {

@@ -26,7 +26,7 @@ class ScreenPort {
 public:
     virtual ~ScreenPort() = default;
 
-    // ---- the thread that presents; no call allocates ----
+    // ---- the thread that presents; flips and their events allocate nothing ----
     /// Becomes the one program that may show. EBUSY, EACCES, EPERM: another one holds the card.
     virtual int take() = 0;
     /// Sets the mode anew, with this picture on it and nothing else. Returns when it is shown.
@@ -42,6 +42,8 @@ public:
     virtual bool connected(bool probe) = 0;
     /// Whether it still has the mode. Asked after it was plugged in again.
     virtual bool has_mode() = 0;
+    /// Whether the link to the screen failed: it stays dark until its mode is set anew.
+    virtual bool link_failed() = 0;
     /// Programs that hold the card: "Xorg (412)"; empty where that cannot be found out.
     virtual std::string holders() = 0;
 };
@@ -63,8 +65,11 @@ public:
     KmsScreen(const KmsScreen&) = delete;
     KmsScreen& operator=(const KmsScreen&) = delete;
 
-    /// Shows the buffer at the next refresh, and returns when it is shown. While the screen is away it tries to get it back twice
-    /// a second, and shows nothing.
+    /// Whether present() returns when the picture is shown, which it does at first. Else it returns when the picture is queued,
+    /// and tells no time. Before the first frame.
+    void wait_for_flips(bool wait) { waits_ = wait; }
+    /// Shows the buffer at the next refresh. One flip is in flight at most: it waits for the one before. While the screen is away
+    /// it tries to get it back twice a second, and shows nothing.
     rt::Shown present(ShownBuffer buffer);
     [[nodiscard]] ScreenState state() const { return state_.load(std::memory_order_relaxed); }
 
@@ -82,6 +87,8 @@ private:
     std::int64_t refresh_ns_;
     std::int64_t (*now_ns_)();
     std::int64_t retry_ns_ = 0;  ///< before that nothing is tried
+    bool waits_ = true;
+    bool in_flight_ = false;  ///< a flip that nobody has waited for
     std::atomic<ScreenState> state_{ScreenState::not_set};
     std::atomic<int> error_{0};           ///< of the last refusal
     std::atomic<bool> set_anew_{false};   ///< by watch(): the screen was plugged in again
@@ -89,7 +96,7 @@ private:
     // ---- watch()'s own ----
     ScreenState reported_ = ScreenState::not_set;
     bool plugged_ = true;
-    std::int64_t watched_ns_ = 0, probed_ns_ = 0;
+    std::int64_t watched_ns_ = 0, probed_ns_ = 0, link_ns_ = 0;
 };
 
 }  // namespace surefoot::gl

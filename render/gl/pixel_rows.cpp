@@ -21,7 +21,8 @@ RowCopier::RowCopier(std::uint32_t width, std::uint32_t height, const Surface& s
 }
 
 void RowCopier::copy(std::span<const std::uint32_t> picture, const PixelRows& rows) const {
-    const bool whole = fit_.x == 0 && fit_.y == 0;
+    const bool whole = static_cast<std::uint32_t>(fit_.width) == rows.surface.width &&
+                       static_cast<std::uint32_t>(fit_.height) == rows.surface.height;
     const std::int32_t top = static_cast<std::int32_t>(rows.surface.height) - fit_.y - fit_.height;
     for (std::uint32_t y = 0; y < rows.surface.height && !whole; ++y)
         std::fill_n(rows.first + y * rows.stride, rows.surface.width, 0U);

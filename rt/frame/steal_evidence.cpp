@@ -12,11 +12,24 @@ constexpr std::size_t max_intervals = 64;
 
 std::int64_t end_of(const FrameRecord& r) { return std::max(r.complete_ns, r.presented_ns); }
 
-/// Causes whose evidence is time that seems spent in a phase, or theft of which the clocks saw a part. The others have evidence
-/// of their own.
-bool may_be_theft(Cause cause) {
-    return cause == Cause::stolen || cause == Cause::select || cause == Cause::submit || cause == Cause::raster ||
-           cause == Cause::upload || cause == Cause::present || cause == Cause::prepared_too_old;
+/// What of the steal may be behind a cause whose evidence is time that seems spent in a phase. The other causes have evidence of
+/// their own.
+enum class Behind : std::uint8_t { nothing, frame_core, any_core };
+
+Behind behind(Cause cause) {
+    switch (cause) {
+        case Cause::submit:
+        case Cause::raster:
+            return Behind::any_core;  // the frame waits for rasterisers on all of theirs
+        case Cause::stolen:
+        case Cause::select:
+        case Cause::upload:
+        case Cause::present:
+        case Cause::prepared_too_old:
+            return Behind::frame_core;
+        default:
+            return Behind::nothing;
+    }
 }
 
 }  // namespace
@@ -33,11 +46,16 @@ void StealEvidence::read(std::int64_t now_ns, std::span<const double> core_steal
     };
     if (!last_ms_.empty() && now_ns <= last_ns_) return;  // another thread was quicker
     if (!last_ms_.empty()) {
-        double grown_ms = 0;
-        for (const int core : cores_) grown_ms = std::max(grown_ms, of_core(core_steal_ms, core) - of_core(last_ms_, core));
-        const auto grown_ns = static_cast<std::int64_t>(std::llround(grown_ms * 1e6));
+        const std::span<const double> before = last_ms_;
+        const auto grown = [&](int core) {
+            const double ms = std::max(0.0, of_core(core_steal_ms, core) - of_core(before, core));
+            return static_cast<std::int64_t>(std::llround(ms * 1e6));
+        };
+        const std::int64_t frame_ns = grown(frame_core_);
+        std::int64_t grown_ns = frame_ns;
+        for (const int core : rasterisers_) grown_ns = std::max(grown_ns, grown(core));
         if (intervals_.size() == max_intervals) intervals_.erase(intervals_.begin());
-        intervals_.push_back({last_ns_, now_ns, grown_ns, grown_ns});
+        intervals_.push_back({last_ns_, now_ns, grown_ns, grown_ns, frame_ns});
     }
     last_ms_.assign(core_steal_ms.begin(), core_steal_ms.end());
     last_ns_ = now_ns;
@@ -56,10 +74,12 @@ std::span<StealEvidence::Interval> StealEvidence::around(const FrameRecord& reco
 
 void StealEvidence::judge(std::span<FrameRecord> records) {
     const MutexLock lock(mutex_);
+    // What explains a miss explains no other, on whichever core it was.
     const auto take = [](std::span<Interval> from, std::int64_t ns) {
         for (Interval& interval : from) {
             const std::int64_t taken = std::clamp<std::int64_t>(ns, 0, interval.left_ns);
             interval.left_ns -= taken;
+            interval.frame_left_ns = std::max<std::int64_t>(0, interval.frame_left_ns - taken);
             ns -= taken;
         }
     };
@@ -71,10 +91,11 @@ void StealEvidence::judge(std::span<FrameRecord> records) {
         take(readings, record.stolen_ns);
     }
     for (FrameRecord& record : records) {
-        if (!record.own_miss || !may_be_theft(record.cause)) continue;
+        const Behind what = behind(record.cause);
+        if (!record.own_miss || what == Behind::nothing) continue;
         const std::span<Interval> readings = around(record);
         std::int64_t left_ns = 0;
-        for (const Interval& interval : readings) left_ns += interval.left_ns;
+        for (const Interval& interval : readings) left_ns += what == Behind::any_core ? interval.left_ns : interval.frame_left_ns;
         const std::int64_t missing_ns = std::max<std::int64_t>(late_ns(record) - record.stolen_ns, 1);
         if (left_ns < missing_ns) continue;
         take(readings, missing_ns);

@@ -19,10 +19,11 @@ namespace surefoot::rt {
 /// saw as stolen is taken off first, and each millisecond of steal explains one miss only.
 class StealEvidence {
 public:
-    /// cores: of the frame thread and of the rasterisers, for which it waits.
-    explicit StealEvidence(const CpuMask& cores) : cores_(cores.cpus()) {}
+    /// rasterisers: cores of the threads for which submission and rasterising wait; may be empty.
+    StealEvidence(int frame_core, const CpuMask& rasterisers) : frame_core_(frame_core), rasterisers_(rasterisers.cpus()) {}
 
-    /// A reading, made now: steal of each core since boot, by its number. Empty: the kernel does not say.
+    /// A reading, begun then: steal of each core since boot, by its number. Empty: the kernel does not say. Who reads makes sure
+    /// that readings come in their order.
     void read(std::int64_t now_ns, std::span<const double> core_steal_ms);
     /// Records in order, once each, that ended before the last reading. Fills core_steal_ns. A miss that looks like this
     /// program's work becomes `stolen`, and is not own, where the steal that is left is at least its lateness.
@@ -32,12 +33,14 @@ private:
     /// Between two readings.
     struct Interval {
         std::int64_t from_ns = 0, to_ns = 0;
-        std::int64_t grown_ns = 0;  ///< of the core whose steal grew most
-        std::int64_t left_ns = 0;   ///< that explains nothing yet
+        std::int64_t grown_ns = 0;       ///< of the core whose steal grew most
+        std::int64_t left_ns = 0;        ///< of it, that explains nothing yet
+        std::int64_t frame_left_ns = 0;  ///< of the frame thread's core alone
     };
     [[nodiscard]] std::span<Interval> around(const FrameRecord& record) REQUIRES(mutex_);
 
-    const std::vector<int> cores_;
+    const int frame_core_;
+    const std::vector<int> rasterisers_;
     Mutex mutex_;
     std::vector<double> last_ms_ GUARDED_BY(mutex_);
     std::int64_t last_ns_ GUARDED_BY(mutex_) = 0;

@@ -50,6 +50,10 @@ TEST(Seat, TheEyeTellsAnArcminuteApartWhereItSitsAndNothingIsKnownElsewhere) {
     s = {};
     s.acuity_arcmin = 2.5;
     EXPECT_NEAR(acuity_rad(s), 2.5 * degree / 60, 1e-15) << "given by itself, it holds in the picture's own angles";
+    s.min_accuracy = 10'000;
+    EXPECT_NEAR(acuity_rad(s), 1e-4, 1e-15) << "a guarantee that is finer wins";
+    s.min_accuracy = 10;
+    EXPECT_NEAR(acuity_rad(s), 2.5 * degree / 60, 1e-15);
 }
 
 TEST(Seat, OneLengthAloneIsRefusedByItsOriginWithTheOther) {

@@ -57,6 +57,10 @@ TEST(KmsModes, TheScreensPreferenceCountsUnlessTheUserSaysOtherwise) {
     EXPECT_EQ(chosen("1920x1080@60"), "1920x1080@60");
     EXPECT_EQ(chosen("1920x1080@59.94"), "1920x1080@59.94");
     EXPECT_EQ(chosen("1920x1080@50"), "1920x1080@50");
+    Screen reversed = screen();
+    std::swap(reversed.modes[2], reversed.modes[3]);
+    EXPECT_EQ(in_words(*choose_mode(reversed, *read_mode("1920x1080@59.94"))), "1920x1080@59.94") << "whichever comes first";
+    EXPECT_EQ(in_words(*choose_mode(reversed, *read_mode("1920x1080@60"))), "1920x1080@60");
     EXPECT_EQ(chosen("@60"), "1920x1200@59.95") << "half a per cent is the same rate";
 }
 

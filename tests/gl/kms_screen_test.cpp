@@ -16,7 +16,8 @@ constexpr std::int64_t ms = 1'000'000;
 /// A card by hand: each call's answer is set before.
 struct TestCard final : ScreenPort {
     int take_error = 0, mode_error = 0, flip_error = 0;
-    bool timed_out = false, counts = true, plugged = true, knows_mode = true;
+    bool timed_out = false, counts = true, plugged = true, knows_mode = true, link_bad = false;
+    int busy_flips = 0;  ///< refused, because the one before is in flight
     std::vector<std::string> calls;
     ShownBuffer shown = 0;
 
@@ -31,6 +32,7 @@ struct TestCard final : ScreenPort {
     }
     int flip(ShownBuffer buffer) override {
         calls.emplace_back("flip");
+        if (busy_flips > 0 && busy_flips-- > 0) return EBUSY;
         if (flip_error == 0) shown = buffer;
         return flip_error;
     }
@@ -49,6 +51,7 @@ struct TestCard final : ScreenPort {
         return plugged;
     }
     bool has_mode() override { return knows_mode; }
+    bool link_failed() override { return link_bad; }
     std::string holders() override { return "Xorg (412)"; }
 
     std::string take_calls() {
@@ -151,6 +154,45 @@ TEST_F(KmsScreens, AFlipWithoutAWordIsGivenUpAfterAQuarterSecond) {
     card.timed_out = false;
     EXPECT_EQ(screen.present(7).by, rt::ShownBy::hand_over) << "by a whole modeset";
     EXPECT_EQ(screen.present(8).by, rt::ShownBy::display);
+}
+
+TEST_F(KmsScreens, AFlipThatMeetsTheOneBeforeWaitsForIt) {
+    screen.present(5);
+    card.take_calls();
+    card.busy_flips = 1;
+    EXPECT_EQ(screen.present(6).by, rt::ShownBy::display);
+    EXPECT_EQ(card.take_calls(), "flip wait flip wait");
+    card.busy_flips = 2;
+    EXPECT_EQ(screen.present(7).by, rt::ShownBy::nothing);
+    EXPECT_EQ(screen.present(8).by, rt::ShownBy::hand_over) << "by a whole modeset";
+}
+
+TEST_F(KmsScreens, WithoutWaitingOneFlipIsInFlightAndNoTimeIsTold) {
+    screen.wait_for_flips(false);
+    screen.present(5);
+    card.take_calls();
+    const rt::Shown shown = screen.present(6);
+    EXPECT_EQ(shown.by, rt::ShownBy::hand_over);
+    EXPECT_EQ(card.take_calls(), "flip") << "the refresh is not waited for";
+    screen.present(7);
+    EXPECT_EQ(card.take_calls(), "wait flip") << "but for the flip before";
+    card.timed_out = true;
+    EXPECT_EQ(screen.present(8).by, rt::ShownBy::nothing);
+    card.timed_out = false;
+    EXPECT_EQ(screen.present(9).by, rt::ShownBy::hand_over);
+    EXPECT_NE(card.take_calls().find("take mode"), std::string::npos);
+}
+
+TEST_F(KmsScreens, AFailedLinkSetsTheModeAtMostEveryTenSeconds) {
+    screen.present(5);
+    watched(0);
+    card.link_bad = true;
+    EXPECT_NE(watched(1000 * ms).find("link failed"), std::string::npos);
+    card.take_calls();
+    screen.present(6);
+    EXPECT_EQ(card.take_calls(), "take mode");
+    EXPECT_EQ(watched(8000 * ms), "");
+    EXPECT_NE(watched(3000 * ms).find("link failed"), std::string::npos);
 }
 
 TEST_F(KmsScreens, ACardThatIsGoneIsNeverAskedAgain) {

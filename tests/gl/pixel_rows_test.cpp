@@ -30,6 +30,13 @@ TEST(PixelRows, AHalfTurnIsTheSamePictureFromItsLastPixel) {
     EXPECT_EQ(memory, (std::vector<std::uint32_t>{2, 1, 0, 102, 101, 100}));
 }
 
+TEST(PixelRows, ABorderOfOnePixelIsBlackToo) {
+    const Surface surface{4, 2};
+    std::vector<std::uint32_t> memory(4 * 2, 9);
+    RowCopier(3, 2, surface).copy(numbered(3, 2), {memory.data(), 4, surface});
+    EXPECT_EQ(memory, (std::vector<std::uint32_t>{100, 101, 102, 0, 0, 1, 2, 0}));
+}
+
 TEST(PixelRows, ALargerWindowRepeatsPixelsAndHasBlackBorders) {
     const Surface surface{6, 4};
     std::vector<std::uint32_t> memory(6 * 4, 9);

@@ -29,7 +29,7 @@ FrameRecord late_by(std::int64_t late, std::int64_t due_ns, Cause cause = Cause:
     return r;
 }
 
-/// Readings every 100 ms of a machine of three cores, of which frames use the last two.
+/// Readings every 100 ms of a machine of three cores. The frame thread is on core 1, rasterisers are on the last two.
 class CoreSteal : public testing::Test {
 protected:
     CoreSteal() { judge({0, 0, 0}, {}); }
@@ -41,7 +41,7 @@ protected:
         now_ns += 100 * ms;
     }
 
-    StealEvidence evidence{CpuMask{1, 2}};
+    StealEvidence evidence{1, CpuMask{1, 2}};
     std::int64_t now_ns = 0;
     std::vector<FrameRecord> records;
 };
@@ -49,7 +49,7 @@ protected:
 TEST_F(CoreSteal, ThatGrewByTheLatenessMakesAMissStolen) {
     for (const Cause cause :
          {Cause::select, Cause::submit, Cause::raster, Cause::upload, Cause::present, Cause::prepared_too_old}) {
-        StealEvidence one(CpuMask{1});
+        StealEvidence one(1, CpuMask{1});
         std::vector<FrameRecord> frames{late_by(7 * ms, 20 * ms, cause)};
         one.read(0, std::array{50.0, 20.0});
         one.read(100 * ms, std::array{50.0, 30.0});
@@ -76,6 +76,17 @@ TEST_F(CoreSteal, OfACoreThatNoFrameUsesExplainsNothing) {
     EXPECT_EQ(records[0].core_steal_ns, 0);
 }
 
+TEST_F(CoreSteal, OfARasterisersCoreExplainsOnlyWhatWaitsForIt) {
+    judge({0, 0, 10}, {late_by(2 * ms, 10 * ms, Cause::select), late_by(2 * ms, 50 * ms, Cause::raster)});
+    EXPECT_TRUE(records[0].own_miss) << "the frame thread chose on its own core";
+    EXPECT_FALSE(records[1].own_miss);
+    judge({0, 10, 10}, {late_by(2 * ms, 120 * ms, Cause::select)});
+    EXPECT_FALSE(records[0].own_miss);
+    judge({0, 20, 10}, {late_by(7 * ms, 210 * ms, Cause::raster), late_by(7 * ms, 250 * ms, Cause::select)});
+    EXPECT_FALSE(records[0].own_miss);
+    EXPECT_TRUE(records[1].own_miss) << "3 ms are left";
+}
+
 TEST_F(CoreSteal, ExplainsOneMissOnlyAndNothingTwice) {
     judge({0, 0, 10}, {late_by(7 * ms, 10 * ms), late_by(7 * ms, 55 * ms)});
     EXPECT_FALSE(records[0].own_miss);
@@ -94,7 +105,7 @@ TEST_F(CoreSteal, ThatTheClocksSawExplainsNothingMore) {
 
 TEST_F(CoreSteal, LeavesCausesWithEvidenceOfTheirOwn) {
     for (const Cause cause : {Cause::preempted, Cause::page_fault, Cause::stopped, Cause::woken_late}) {
-        StealEvidence one(CpuMask{0});
+        StealEvidence one(0, CpuMask{0});
         std::vector<FrameRecord> frames{late_by(2 * ms, 20 * ms, cause)};
         one.read(0, std::array{0.0});
         one.read(100 * ms, std::array{50.0});
@@ -118,7 +129,7 @@ TEST_F(CoreSteal, ExplainsAPictureThatWasShownLate) {
     r.presented_ns = r.show_ns + 8 * ms;
     r.missed = r.own_miss = true;
     r.cause = Cause::present;
-    judge({0, 0, 10}, {r});
+    judge({0, 10, 0}, {r});
     EXPECT_EQ(records[0].cause, Cause::stolen);
 }
 
@@ -162,7 +173,7 @@ TEST_F(CoreSteal, ExplainsTheRecordedTheftsThatLookedLikeWork) {
         r.cause = blame(r, limits);
         r.own_miss = is_own_miss(r, limits);
         own_by_clocks += r.own_miss ? 1 : 0;
-        StealEvidence one(CpuMask{0});
+        StealEvidence one(0, CpuMask{0});
         one.read(r.due_ns, std::array{0.0});
         one.read(r.complete_ns, std::array{static_cast<double>(r.core_steal_ns) * 1e-6});
         one.judge({&r, 1});

@@ -1,5 +1,6 @@
 // What a guest needs to judge a screen: compares a dump with a picture, and holds a card as another program would.
 #include <fcntl.h>
+#include <linux/kd.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -120,18 +121,31 @@ int uniform(const std::string& ppm, int red, int green, int blue) {
     return others == 0 ? 0 : 1;
 }
 
+/// Whether a console draws text or leaves the screen to others, and whether it takes keys.
+int console(const char* tty) {
+    const int file = ::open(tty, O_RDWR | O_CLOEXEC | O_NOCTTY);
+    int mode = -1, keyboard = -1;
+    if (file < 0 || ::ioctl(file, KDGETMODE, &mode) != 0 || ::ioctl(file, KDGKBMODE, &keyboard) != 0) {
+        std::printf("%s: %s\n", tty, std::strerror(errno));
+        return 1;
+    }
+    std::printf("%s, keyboard %s\n", mode == KD_GRAPHICS ? "graphics" : "text", keyboard == K_OFF ? "off" : "on");
+    return 0;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
     const std::string command = count > 1 ? arguments[1] : "";
     if (command == "hold" && count == 3) return hold(arguments[2]);
     if (command == "same" && (count == 4 || count == 5)) return compare(arguments[2], arguments[3], count == 5);
+    if (command == "console" && count == 3) return console(arguments[2]);
     if (command == "sky" && count == 4) return show_sky(arguments[2], arguments[3]);
     if (command == "uniform" && count == 6)
         return uniform(arguments[2], std::atoi(arguments[3]), std::atoi(arguments[4]), std::atoi(arguments[5]));
     std::fprintf(
         stderr,
         "usage: vm_screen same PICTURE.png DUMP.ppm [half-turn] | uniform DUMP.ppm RED GREEN BLUE | hold /dev/dri/cardN | "
-        "sky SCREEN MODE\n");
+        "sky SCREEN MODE | console /dev/ttyN\n");
     return 2;
 }

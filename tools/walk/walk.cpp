@@ -35,7 +35,6 @@ WalkStagesOptions stages_options(Session& s) {
     o.capture_missed = s.request.capture_file.empty() && s.observer.on_missed_frame;
     if (s.observer.inject) o.inject = &s.observer.inject;
     o.display = s.observer.display;
-    o.follows_display = s.display.has_value();
     o.lost = &s.lost;
     return o;
 }
@@ -119,8 +118,10 @@ void notify_screen(Session& s, const Progress& progress) {
 
 /// The kernel's steal of each core as it is now, beside what the frames' own clocks see.
 void read_core_steal(Session& s) {
+    const MutexLock in_order(s.steal_order);  // two threads read
+    const std::int64_t begun_ns = rt::monotonic_ns();
     const auto steal = rt::read_steal();
-    s.steal->read(rt::monotonic_ns(), steal ? std::span<const double>(steal->cpu_ms) : std::span<const double>());
+    s.steal->read(begun_ns, steal ? std::span<const double>(steal->cpu_ms) : std::span<const double>());
 }
 
 /// While the frame thread walks: serves the input, reports progress, and counts the threads once all have started.
@@ -263,7 +264,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
         if (observer.on_record) observer.on_record(record);
     };
     if (!s.virtual_clock) {
-        s.steal.emplace(s.rasterisers.empty() ? rt::CpuMask{s.plan.frame_core} : s.plan.all);
+        s.steal.emplace(s.plan.frame_core, s.rasterisers.empty() ? rt::CpuMask{} : s.plan.all);
         read_core_steal(s);  // before the first frame is due
         recorder_options.on_batch = [&](std::span<rt::FrameRecord> records) {
             read_core_steal(s);

@@ -78,7 +78,7 @@ Result<void> claim(Session& s) {
 /// Waits for a screen that another program has; without an end for any screen, as a kiosk's may be off when it starts.
 bool wait_for_screen(const Error& why, bool held, bool endless, const Progress& progress, std::string& notified) {
     if (progress.stopped() || (!held && !(endless && why.kind == ErrorKind::no_device))) return false;
-    std::string text = why.place + ": " + why.what + ". The walk waits for it.";
+    std::string text = fmt::format("{}: {}. {}. The walk waits for it.", why.place, why.what, why.remedy);
     if (text != notified && progress.notify) progress.notify(text);
     notified = std::move(text);
     return true;
@@ -86,13 +86,20 @@ bool wait_for_screen(const Error& why, bool held, bool endless, const Progress& 
 
 /// The grid follows a display that tells when it shows, where the rate divides its refresh.
 void follow_display(Session& s) {
-    const rt::Refreshes refreshes = s.engine->device().refreshes();
-    if (s.virtual_clock || s.observer.display != nullptr || refreshes.period_ns == 0) return;
+    gl::Device& device = s.engine->device();
+    const rt::Refreshes refreshes = device.refreshes();
+    if (s.virtual_clock || s.observer.display != nullptr || s.engine->options().device.kind != gl::BackendKind::kms) return;
+    if (refreshes.period_ns == 0) {
+        device.wait_for_flips(false);
+        s.notes.emplace_back("screen: Its card counts no refreshes. Pictures are shown by this machine's clock.");
+        return;
+    }
     auto per_slot = rt::refreshes_per_slot(refreshes, s.request.rate_hz);
     if (per_slot) {
         s.display.emplace(refreshes, *per_slot);
         return;
     }
+    device.wait_for_flips(false);
     s.notes.push_back(
         fmt::format("screen: {}. Pictures are shown up to a refresh late. {}.", per_slot.error().what, per_slot.error().remedy));
 }
@@ -108,7 +115,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.device.samples = r.samples;
     options.device.filter = r.filter == rt::TextureFilter::adaptive ? rt::TextureFilter::automatic : r.filter;
     options.device.second_filter = r.filter == rt::TextureFilter::adaptive;
-    options.device.screen = {r.screen, r.mode, r.rotation_deg, {}};
+    options.device.screen = {r.screen, r.mode, r.rotation_deg, r.endless, {}};
     options.device.sky = config::colour_of(r.sky);
     options.device.fullscreen = r.fullscreen;
     options.device.null.cost_scale = r.cost_scale;
@@ -125,7 +132,6 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     const bool may_choose = r.accuracy == 0 && r.selector == select::usual_selector;
     options.resolution = r.resolution_pct == 0 && !may_choose ? 1.0F : static_cast<float>(r.resolution_pct * 0.01);
     options.max_error_rad = r.min_accuracy > 0 ? 1.0 / r.min_accuracy : 0;
-    if (options.max_error_rad > 0) options.prepare.acuity_rad = std::min(options.prepare.acuity_rad, options.max_error_rad);
     options.in_frame_check = r.in_frame_check;
     options.benefit = r.benefit;
     options.rest_after_ms = r.rest_after_ms;

@@ -55,6 +55,7 @@ struct Session {
     std::unique_ptr<WindowThread> window;     ///< null without a window
     std::vector<pid_t> rasterisers;
     std::vector<pid_t> on_frame_core;        ///< those of them that share the frame thread's core
+    Mutex steal_order;                       ///< its readings come in their order
     std::optional<rt::StealEvidence> steal;  ///< real clock: what the host took of the frame's cores
     KeptFrame kept;
     rt::ControlSchedule control;

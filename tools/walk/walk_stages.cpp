@@ -338,14 +338,10 @@ rt::Shown WalkStages::present(rt::FrameRecord& record) {
     if (options_.display != nullptr) return options_.display->present(record);
     gl::Device& device = engine_.device();
     device.draws.plays();
-    rt::Shown shown = device.present();
-    if (device.lost()) {
-        if (options_.lost != nullptr) options_.lost->store(true);
-        return {};
-    }
-    // A display that the grid does not follow shows between its points: that says nothing of the frame.
-    if (shown.by == rt::ShownBy::display && !options_.follows_display) shown = {rt::ShownBy::hand_over, 0, 0};
-    return shown;
+    const rt::Shown shown = device.present();
+    if (!device.lost()) return shown;
+    if (options_.lost != nullptr) options_.lost->store(true);
+    return {};
 }
 
 /// What a frame that drew a selected cut says of predictions.

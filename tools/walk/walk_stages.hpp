@@ -54,7 +54,6 @@ struct WalkStagesOptions {
     bool capture_missed = false;              ///< also keep missed frames, one at a time
     const FaultHook* inject = nullptr;        ///< injects faults, for tests; null: none
     const TestDisplay* display = nullptr;     ///< takes the pictures, for tests; null: the device does
-    bool follows_display = false;             ///< the grid is held to the device's display
     const std::atomic<bool>* stop = nullptr;  ///< ends the rehearsal; may be null
     const std::atomic<bool>* left = nullptr;  ///< the same
     RegionClip* clip = nullptr;               ///< where frames are prepared inline; null where nobody walks
