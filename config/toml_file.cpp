@@ -54,7 +54,7 @@ void read_key(Reading& into, std::string_view key, const toml::node& node, const
     const Entry* entry = schema.find(key);
     const auto value = value_of(node);
     if (value) problem.found = text_of(*value);
-    if (entry == nullptr) {
+    if (entry == nullptr || node.is_table()) {
         problem.error = node.is_table() ? unknown_table(key) : unknown_key(schema, {}, key);
         problem.nearest = std::string(schema.nearest(key));
         return complain(into, name, node, std::move(problem));

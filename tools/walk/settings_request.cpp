@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "render/gl/backends.hpp"
+#include "render/gl/kms_modes.hpp"
 #include "render/select/registry.hpp"
 #include "tools/walk/path_source.hpp"
 
@@ -92,6 +93,7 @@ Result<void> check_request(const WalkRequest& r) {
                      "Remove --input", ErrorKind::misuse};
     const auto backend = gl::backend_named(r.backend);
     if (!backend) return backend.error();
+    if (auto mode = gl::read_mode(r.mode); !mode) return mode.error();
     if (auto ok = check_window(r, (*backend)->kind); !ok) return ok;
     if (r.cost_noise > 0 && (r.clock == rt::ClockKind::real || (*backend)->draws()))
         return Error{"--cost-noise", "Only simulated costs can have noise, and these costs are real",

@@ -8,7 +8,6 @@
 
 #include "config/seat.hpp"
 #include "render/gl/backends.hpp"
-#include "render/gl/kms_modes.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
 #include "render/select/registry.hpp"
@@ -31,7 +30,6 @@ Result<void> read_request(Session& s) {
         if (!refreshes) return refreshes.error();
         s.display.emplace(s.observer.display->refreshes, *refreshes);
     }
-    if (auto mode = gl::read_mode(s.request.mode); !mode) return mode.error();
     return check_request(s.request);
 }
 
