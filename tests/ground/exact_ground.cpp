@@ -250,6 +250,9 @@ double ExactGround::first_contact(const dvec3& low, double length, double radius
 std::vector<double> ExactGround::floors_at(double x, double z, double min_normal_y) const {
     std::vector<double> heights;
     for (const std::uint32_t t : bins_.near(upright_line(x, z))) {
+        constexpr double margin = 1e-6;  // far beyond the rounding of height_at()
+        const Box box = box_of(triangles_[t].corners);
+        if (x < box.min.x - margin || x > box.max.x + margin || z < box.min.z - margin || z > box.max.z + margin) continue;
         const Face face = seen_from(triangles_[t].corners, triangles_[t].corners[0]);
         const Point normal = glm::cross(face[1], face[2]);
         if (!(std::abs(normal.y) >= min_normal_y * glm::length(normal))) continue;
