@@ -34,6 +34,7 @@ namespace surefoot::gl {
     X(GetProperty, drmModeGetProperty)                   \
     X(GetResources, drmModeGetResources)                 \
     X(Ioctl, drmIoctl)                                   \
+    X(IsMaster, drmIsMaster)                             \
     X(ObjectGetProperties, drmModeObjectGetProperties)   \
     X(RmFB, drmModeRmFB)                                 \
     X(SetClientCap, drmSetClientCap)                     \

@@ -232,7 +232,11 @@ void KmsCard::remove_buffer(ShownBuffer buffer) {
     if (buffer != 0) drm_.RmFB(file_, buffer);
 }
 
-int KmsCard::take() { return drm_.SetMaster(file_) == 0 ? 0 : errno; }
+/// Linux 6.1 lets an ordinary user ask again only on the thread that opened the card, even where it is master.
+int KmsCard::take() {
+    if (drm_.IsMaster(file_) != 0) return 0;
+    return drm_.SetMaster(file_) == 0 ? 0 : errno;
+}
 
 bool KmsCard::add_to(drmModeAtomicReq* request, ShownBuffer buffer) const {
     bool added = true;

@@ -194,6 +194,37 @@ std::vector<std::uint32_t> Bins::near(const Box& box) const {
     return found;
 }
 
+void Columns::build(std::span<const Box> boxes) {
+    constexpr std::size_t max_columns = 4096;  // of one box
+    boxes_.assign(boxes.begin(), boxes.end());
+    Box all;
+    for (const Box& box : boxes) all.grow(box);
+    if (boxes.empty()) return;
+    sides_ = std::min<std::size_t>(1024, 2 + static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(boxes.size()))));
+    first_.assign(sides_ * sides_ + 1, 0);
+    const auto sides = static_cast<double>(sides_);
+    low_x_ = all.min.x;
+    low_z_ = all.min.z;
+    side_m_ = std::max({(all.max.x - all.min.x) / (sides - 1), (all.max.z - all.min.z) / (sides - 1), 1e-6});
+    const auto cell_of = [&](double at, double low) {
+        return static_cast<std::size_t>(std::clamp(std::floor((at - low) / side_m_), 0.0, sides - 1));
+    };
+    const auto each_cell = [&](const Box& box, const auto& use) {
+        const std::size_t x0 = cell_of(box.min.x, low_x_), x1 = cell_of(box.max.x, low_x_);
+        const std::size_t z0 = cell_of(box.min.z, low_z_), z1 = cell_of(box.max.z, low_z_);
+        if ((x1 - x0 + 1) * (z1 - z0 + 1) > max_columns) return false;
+        for (std::size_t z = z0; z <= z1; ++z)
+            for (std::size_t x = x0; x <= x1; ++x) use(z * sides_ + x);
+        return true;
+    };
+    for (std::uint32_t i = 0; i < boxes_.size(); ++i)
+        if (!each_cell(boxes_[i], [&](std::size_t cell) { ++first_[cell + 1]; })) wide_.push_back(i);
+    for (std::size_t cell = 0; cell < sides_ * sides_; ++cell) first_[cell + 1] += first_[cell];
+    numbers_.resize(first_.back());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint32_t i = 0; i < boxes_.size(); ++i) each_cell(boxes_[i], [&](std::size_t cell) { numbers_[next[cell]++] = i; });
+}
+
 ExactGround::ExactGround(const importer::Scene& scene, const std::vector<std::vector<bool>>& blocking) {
     for (std::uint32_t n = 0; n < scene.nodes.size(); ++n) {
         if (blocking.at(n).empty()) continue;
@@ -212,6 +243,9 @@ ExactGround::ExactGround(const importer::Scene& scene, const std::vector<std::ve
         }
     }
     bins_.sort();
+    std::vector<Box> boxes;
+    for (const Triangle& triangle : triangles_) boxes.push_back(box_of(triangle.corners));
+    columns_.build(boxes);
 }
 
 double ExactGround::distance(const dvec3& low, double length, double up_to) const {
@@ -249,15 +283,12 @@ double ExactGround::first_contact(const dvec3& low, double length, double radius
 
 std::vector<double> ExactGround::floors_at(double x, double z, double min_normal_y) const {
     std::vector<double> heights;
-    for (const std::uint32_t t : bins_.near(upright_line(x, z))) {
-        constexpr double margin = 1e-6;  // far beyond the rounding of height_at()
-        const Box box = box_of(triangles_[t].corners);
-        if (x < box.min.x - margin || x > box.max.x + margin || z < box.min.z - margin || z > box.max.z + margin) continue;
+    columns_.at(x, z, [&](std::uint32_t t) {
         const Face face = seen_from(triangles_[t].corners, triangles_[t].corners[0]);
         const Point normal = glm::cross(face[1], face[2]);
-        if (!(std::abs(normal.y) >= min_normal_y * glm::length(normal))) continue;
+        if (!(std::abs(normal.y) >= min_normal_y * glm::length(normal))) return;
         if (const std::optional<double> height = height_at(triangles_[t].corners, x, z)) heights.push_back(*height);
-    }
+    });
     std::sort(heights.begin(), heights.end());
     return heights;
 }

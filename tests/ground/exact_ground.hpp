@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/import/scene.hpp"
@@ -31,6 +33,32 @@ private:
         bool operator<(const Entry& other) const { return bin < other.bin; }
     };
     std::map<int, std::vector<Entry>> levels_;  ///< by the exponent of the bins' side
+};
+
+/// Numbered boxes by the columns that they stand on, for upright lines. Those that cover many columns are in no column.
+class Columns {
+public:
+    void build(std::span<const Box> boxes);
+    /// Numbers of all boxes that the line meets, and of no other.
+    template <class Use>
+    void at(double x, double z, const Use& use) const {
+        for (const std::uint32_t number : wide_) use_if_met(number, x, z, use);
+        const double column = std::floor((x - low_x_) / side_m_), row = std::floor((z - low_z_) / side_m_);
+        if (!(column >= 0 && row >= 0 && column < static_cast<double>(sides_) && row < static_cast<double>(sides_))) return;
+        const std::size_t cell = static_cast<std::size_t>(row) * sides_ + static_cast<std::size_t>(column);
+        for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) use_if_met(numbers_[i], x, z, use);
+    }
+
+private:
+    template <class Use>
+    void use_if_met(std::uint32_t number, double x, double z, const Use& use) const {
+        const Box& box = boxes_[number];
+        if (x >= box.min.x && x <= box.max.x && z >= box.min.z && z <= box.max.z) use(number);
+    }
+    std::vector<Box> boxes_;
+    double low_x_ = 0, low_z_ = 0, side_m_ = 1;
+    std::size_t sides_ = 0;  ///< columns each way
+    std::vector<std::uint32_t> first_, numbers_, wide_;
 };
 
 /// A triangle of a node's mesh, counted through the mesh's primitives.
@@ -66,6 +94,7 @@ private:
     };
     std::vector<Triangle> triangles_;
     Bins bins_;
+    Columns columns_;
 };
 
 }  // namespace surefoot::exact
