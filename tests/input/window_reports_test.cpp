@@ -207,5 +207,31 @@ TEST(WindowFeed, SumsUpWhatFindsNoRoomAndLosesNoRelease) {
     EXPECT_EQ(last.keys, 0U);
 }
 
+TEST(WindowFeed, ATapWithinTheOverflowIsPressedAndReleased) {
+    WindowFeed feed;
+    WindowReport report;
+    report.dx = 1;
+    while (feed.flush()) feed.push(report);  // the last one finds no room
+    report.dx = 0;
+    for (const std::uint64_t keys : {4U, 0U, 8U, 9U, 1U}) {
+        report.keys = keys;
+        ++report.stamp_ns;
+        feed.push(report);
+    }
+    WindowReport taken;
+    ASSERT_TRUE(feed.take(taken));
+    EXPECT_FALSE(feed.flush()) << "there is room for one of two";
+    while (feed.take(taken) && taken.keys == 0) {
+    }
+    EXPECT_EQ(taken.keys, 4U | 8U | 1U) << "all that were pressed meanwhile";
+    EXPECT_EQ(taken.dx, 1);
+    EXPECT_TRUE(feed.flush());
+    ASSERT_TRUE(feed.take(taken));
+    EXPECT_EQ(taken.keys, 1U) << "then those that are still down";
+    EXPECT_EQ(taken.dx, 0);
+    EXPECT_EQ(taken.stamp_ns, 5);
+    EXPECT_FALSE(feed.take(taken));
+}
+
 }  // namespace
 }  // namespace surefoot::input
