@@ -83,6 +83,12 @@ struct CrossingEvent {
     unsigned state;
 };
 
+/// FocusIn and FocusOut.
+struct FocusEvent {
+    AnyEvent any;
+    int mode, detail;
+};
+
 /// KeymapNotify: the keys that are down, a bit a code.
 struct KeymapEvent {
     AnyEvent any;
@@ -112,6 +118,7 @@ union Event {
     AnyEvent any;
     PointerEvent pointer;
     CrossingEvent crossing;
+    FocusEvent focus;
     KeymapEvent keymap;
     ConfigureEvent configure;
     MessageEvent message;

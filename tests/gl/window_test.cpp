@@ -172,6 +172,8 @@ TEST(WindowOnServer, ItsVisitorsEventsArrive) {
     EXPECT_EQ(pressed->code, 1U);
     EXPECT_EQ(events.back().x - pressed->x, 20);
     EXPECT_EQ(events.back().y - pressed->y, -5);
+    EXPECT_EQ(pressed->x_screen, 50);
+    EXPECT_EQ(pressed->y_screen, 60);
 
     ASSERT_TRUE(window.capture());
     window.centre_pointer();
@@ -186,6 +188,12 @@ TEST(WindowOnServer, ItsVisitorsEventsArrive) {
     (*visitor)->key('a', false);
     const auto released = events_until(window, Kind::key_up).back();
     EXPECT_TRUE(((events.back().held[released.code / 8] >> (released.code % 8)) & 1U) != 0) << "it was held before";
+
+    (*visitor)->move_to(50, 60);
+    (*visitor)->let_focus_follow_pointer();
+    (*visitor)->tap('s');
+    events = events_until(window, Kind::key_up);
+    EXPECT_EQ(std::ranges::count(events, Kind::focus_in, &WindowEvent::kind), 0) << "the keyboard is the pointer's";
     (*visitor)->close(window.id());
     events_until(window, Kind::close);
 }
