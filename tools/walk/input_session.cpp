@@ -45,7 +45,10 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
                       request.max_slope_deg * std::numbers::pi / 180, request.edge_m};
     session->motion_ = steering.motion;
     session->motion_.frame_s = static_cast<double>(period_ns) * 1e-9;
-    if (window_steers(request)) session->window_feed_ = std::make_shared<input::WindowFeed>();
+    if (window_steers(request)) {
+        session->window_feed_ = std::make_shared<input::WindowFeed>();
+        session->window_stop_keys_ = input::stop_keys(input::window_mapping(steering.devices, request.pointer_turn_deg));
+    }
     if (is_steered_live(request)) {
         session->begins_touring_ = request.input_file.empty();
         if (request.input_file.empty()) session->source_name_ = window_input;

@@ -49,6 +49,8 @@ public:
     [[nodiscard]] bool live() const { return live_.has_value(); }
     /// Where the window's keyboard and mouse are to be pushed to; null where they do not steer.
     [[nodiscard]] const std::shared_ptr<input::WindowFeed>& window_feed() const { return window_feed_; }
+    /// The keys that stop: see input::WindowReports.
+    [[nodiscard]] std::uint64_t window_stop_keys() const { return window_stop_keys_; }
     /// As of the last step: nobody is led along the path. After begin().
     [[nodiscard]] bool steered() const { return stepper_ && stepper_->shown_steered(); }
     /// Devices as of the last poll(); what stops the walker as of the last step.
@@ -65,6 +67,7 @@ private:
     std::string source_name_;
     std::optional<LiveInput> live_;
     std::shared_ptr<input::WindowFeed> window_feed_;
+    std::uint64_t window_stop_keys_ = 0;
     bool begins_touring_ = false;  ///< the path is followed until a hand moves
     double duration_s_ = 0;
     std::int64_t period_ns_ = 0;

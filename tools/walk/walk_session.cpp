@@ -300,7 +300,8 @@ Result<void> open_session(Session& s, const Progress& progress) {
 void open_window_thread(Session& s) {
     auto window = s.engine->device().window();
     if (!window) return;
-    const WindowThreadOptions options{s.input ? s.input->window_feed() : nullptr, s.request.may_leave};
+    const WindowThreadOptions options{s.input ? s.input->window_feed() : nullptr, s.request.may_leave,
+                                      s.input ? s.input->window_stop_keys() : 0};
     rt::Placement placement = window_placement(s.plan);
     if (s.virtual_clock) placement = {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = placement.name};
     s.window = std::make_unique<WindowThread>(std::move(window), options, placement);

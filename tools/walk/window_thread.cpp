@@ -45,7 +45,8 @@ void WindowThread::run() {
     if (auto placed = rt::place_thread(0, placement_); !placed) misplaced_ = placed.error();
     placed_.count_down();
     const gl::WindowSize size = window_->size();
-    input::WindowReports reports(static_cast<std::int32_t>(size.width), static_cast<std::int32_t>(size.height));
+    input::WindowReports reports(static_cast<std::int32_t>(size.width), static_cast<std::int32_t>(size.height),
+                                 options_.stop_keys);
     while (!stopping_.load(std::memory_order_relaxed)) {
         take_events(reports);
         take_shown();

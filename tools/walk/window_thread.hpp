@@ -1,5 +1,5 @@
 // The thread that reads a window's events: hands its keys and pointer to the input thread, and does what the visitor orders of
-// the window. Nobody waits for it, and it waits for the X server alone.
+// the window. No thread waits for this one. It waits only for the X server.
 #pragma once
 
 #include <atomic>
@@ -20,7 +20,8 @@ namespace surefoot::walk {
 /// Settings of the thread.
 struct WindowThreadOptions {
     std::shared_ptr<input::WindowFeed> feed;  ///< null: keys and pointer do not steer
-    bool may_leave = true;                    ///< false: neither Escape nor closing ends the walk
+    bool may_leave = false;                   ///< Escape and closing end the walk
+    std::uint64_t stop_keys = 0;              ///< see input::WindowReports
 };
 
 /// Runs from the constructor to stop().

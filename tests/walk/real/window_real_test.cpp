@@ -176,7 +176,7 @@ TEST(WindowThread, ClosingTheWindowLeavesUnlessNobodyMay) {
     for (const bool may_leave : {true, false}) {
         auto window = gl::WindowEvents::open({64, 64}, "test", false);
         ASSERT_TRUE(window.ok()) << window.error().text();
-        walk::WindowThread thread(*window, {nullptr, may_leave},
+        walk::WindowThread thread(*window, {.feed = nullptr, .may_leave = may_leave, .stop_keys = 0},
                                   {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-window"});
         (*visitor)->close((*window)->id());
         for (int i = 0; i < 100 && !thread.left().load() && (may_leave || i < 10); ++i) wait_ms(10);
