@@ -51,8 +51,8 @@ public:
     [[nodiscard]] const std::shared_ptr<input::WindowFeed>& window_feed() const { return window_feed_; }
     /// The keys that stop: see input::WindowReports.
     [[nodiscard]] std::uint64_t window_stop_keys() const { return window_stop_keys_; }
-    /// As of the last step: nobody is led along the path. After begin().
-    [[nodiscard]] bool steered() const { return stepper_ && stepper_->shown_steered(); }
+    /// As of the last step: somebody pressed or moved something. After begin().
+    [[nodiscard]] bool used() const { return stepper_ && stepper_->shown_used(); }
     /// Devices as of the last poll(); what stops the walker as of the last step.
     [[nodiscard]] rt::InputState now() const;
     /// Ends the input thread. Returns the error if the thread could not be placed.

@@ -52,8 +52,8 @@ public:
     void step(std::int64_t now_ns);
     /// Every step that is due by `now_ns`, each at its own time: the same whenever it is called (virtual clock).
     void advance_to(std::int64_t now_ns);
-    /// For any thread: whether somebody walks or stands by hand, as of the last step; else he is led along the path.
-    [[nodiscard]] bool shown_steered() const { return shown_steered_.load(std::memory_order_relaxed); }
+    /// For any thread: whether a report has come, or nobody is led along the path, as of the last step.
+    [[nodiscard]] bool shown_used() const { return shown_used_.load(std::memory_order_relaxed); }
 
 private:
     void publish(const input::NavigationSample& sample, std::int64_t now_ns);
@@ -67,7 +67,7 @@ private:
     input::StopKeeper* keeper_;
     std::uint32_t jumps_reported_ = 0;
     std::int64_t tick_at_ns_ = 0;
-    std::atomic<bool> shown_steered_{false};
+    std::atomic<bool> shown_used_{false};
 };
 
 }  // namespace surefoot::walk

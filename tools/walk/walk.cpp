@@ -91,7 +91,7 @@ rt::FrameLoopOptions loop_options(Session& s, const Progress& progress) {
     o.failed = &s.lost;
     if (s.window) o.left = &s.window->left();
     if (s.may_be_prolonged) o.prolonged = &s.prolonged;
-    o.prolonged_frames = max_frames;
+    o.prolonged_frames = s.request.max_kept_frames;
     o.continued = s.virtual_clock ? nullptr : rt::count_continues();
     o.rasterisers = s.rasterisers;
     o.rasterisers_on_core = s.on_frame_core;
@@ -134,7 +134,7 @@ void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, cons
         if (s.input) s.input->poll(progress, s.notes);
         notify_screen(s, progress);
         notify_input(s);
-        if (s.may_be_prolonged && s.input->steered()) s.prolonged.store(true, std::memory_order_relaxed);
+        if (s.may_be_prolonged && s.input->used()) s.prolonged.store(true, std::memory_order_relaxed);
         notify_missed_frame(s);
         if (s.steal && rt::monotonic_ns() - steal_read_ns >= steal_every_ns) {
             steal_read_ns = rt::monotonic_ns();
@@ -285,6 +285,11 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     if (s.window) s.window->stop();
     outcome.left = s.window && s.window->left().load();
     outcome.stopped = progress.stopped() && !outcome.left && (request.endless || s.prolonged.load() || seen < s.frames);
+    if (s.prolonged.load() && !outcome.stopped && !outcome.left && !s.lost)
+        outcome.notes.push_back(
+            fmt::format("The walk ended after {} frames: no more are kept. Start it again, or let surefootd "
+                        "run it, which keeps none.",
+                        seen));
     if (s.input) outcome.summary.input = s.input->summary(outcome.records);
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
     if (s.window) outcome.summary.display = s.window->displayed();

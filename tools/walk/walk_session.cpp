@@ -234,13 +234,13 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
     const double frames = s.request.control      ? static_cast<double>(s.control.slots())
                           : s.request.frames > 0 ? static_cast<double>(s.request.frames)
                                                  : std::max(1.0, std::round(seconds / period_s));
-    if (s.request.keep_records && !(frames <= static_cast<double>(max_frames))) {
+    if (s.request.keep_records && !(frames <= static_cast<double>(s.request.max_kept_frames))) {
         const bool limited = s.request.frames > 0 || s.request.seconds > 0 || s.request.control;
         return Error{limited    ? "walk"
                      : recorded ? s.request.input_file
                                 : s.path.source,
                      fmt::format("The walk takes {:.4g} frames, and at most {} are kept ({:.0f} hours at this rate)", frames,
-                                 max_frames, static_cast<double>(max_frames) * period_s / 3600.0),
+                                 s.request.max_kept_frames, static_cast<double>(s.request.max_kept_frames) * period_s / 3600.0),
                      "Give a smaller --frames or --seconds", ErrorKind::out_of_limits};
     }
     if (!s.request.capture_file.empty() && static_cast<double>(s.request.capture_frame) >= frames) {

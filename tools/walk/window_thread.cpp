@@ -109,7 +109,8 @@ void WindowThread::obey(input::WindowCommand command, input::WindowReports& repo
         case Command::centre:
             return window_->centre_pointer();
         case Command::fullscreen:
-            return window_->toggle_fullscreen();
+            if (options_.feed || options_.may_leave) window_->toggle_fullscreen();
+            return;
     }
 }
 

@@ -20,7 +20,7 @@ namespace surefoot::walk {
 /// Settings of the thread.
 struct WindowThreadOptions {
     std::shared_ptr<input::WindowFeed> feed;  ///< null: keys and pointer do not steer
-    bool may_leave = false;                   ///< Escape and closing end the walk
+    bool may_leave = false;                   ///< Escape and closing end the walk; without it and a feed F11 does nothing too
     std::uint64_t stop_keys = 0;              ///< see input::WindowReports
 };
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <thread>
 #include <vector>
 
@@ -107,6 +108,7 @@ TEST(WindowWalk, KeysAndMouseLeadOffThePathAndEscapeEndsTheWalk) {
     walk::WalkRequest request = test::Forest::get().virtual_request(0);
     request.clock = rt::ClockKind::real;
     request.backend = walk::window_input;
+    request.may_leave = request.may_steer = true;
     request.width = 200;
     request.height = 150;
     request.rate_hz = 60;
@@ -166,6 +168,116 @@ TEST(WindowWalk, KeysAndMouseLeadOffThePathAndEscapeEndsTheWalk) {
     EXPECT_EQ(in.guard_violations, 0U);
     if (!rt::guard_active()) std::printf("allocations are not counted in this build\n");
     EXPECT_TRUE(outcome->summary.census_problems.empty()) << outcome->summary.census_problems.front();
+}
+
+/// A walk of a second in a window, while `hand` acts on it from its first frame on.
+Result<walk::WalkOutcome> walk_in_window(walk::WalkRequest request, const std::function<void()>& hand) {
+    request.clock = rt::ClockKind::real;
+    request.backend = walk::window_input;
+    request.width = 80;
+    request.height = 60;
+    request.rate_hz = 60;
+    std::atomic<std::int64_t> first_ns{0};
+    std::thread visitor([&] {
+        first_ns.wait(0);
+        rt::RealClock clock;
+        clock.sleep_until_ns(first_ns.load());
+        if (first_ns.load() > 1) hand();
+    });
+    walk::WalkObserver observer;
+    observer.on_started = [&](const walk::WalkStart& start) {
+        first_ns.store(start.t0_ns);
+        first_ns.notify_one();
+    };
+    auto outcome = walk::run_walk(request, {}, observer);
+    if (first_ns.load() == 0) first_ns.store(1);  // it never began
+    first_ns.notify_one();
+    visitor.join();
+    return outcome;
+}
+
+/// The forest's path, cut to a second.
+std::shared_ptr<const Path> second_of_path() {
+    auto path = read_path(test::Forest::get().path_file);
+    EXPECT_TRUE(path.ok());
+    Path cut;
+    for (const PathSample& s : path->samples)
+        if (s.time_s <= 1) cut.samples.push_back(s);
+    return std::make_shared<const Path>(std::move(cut));
+}
+
+TEST(WindowWalk, AnyKeyProlongsItAPauseToo) {
+#ifdef SUREFOOT_WATCHES_THREADS
+    GTEST_SKIP() << "drivers cannot be opened under the thread sanitizer";
+#endif
+    auto server = test::XServer::start("320x240x24");
+    if (!server) GTEST_SKIP() << server.error().text();
+    auto visitor = test::XVisitor::come();
+    if (!visitor) GTEST_SKIP() << visitor.error().text();
+    for (const unsigned long symbol : {0UL, 0x70UL, 0x78UL}) {  // none, P, and X, which has no action
+        walk::WalkRequest request = test::Forest::get().virtual_request(0);
+        request.given_path = second_of_path();
+        request.may_leave = request.may_steer = true;
+        const auto outcome = walk_in_window(request, [&] {
+            if (symbol == 0) return;
+            (*visitor)->tap(symbol);
+            wait_ms(2000);  // its end passes
+            (*visitor)->tap(symbol_escape);
+        });
+        ASSERT_TRUE(outcome.ok()) << outcome.error().text();
+        EXPECT_EQ(outcome->left, symbol != 0) << symbol;
+        if (symbol == 0)
+            EXPECT_EQ(outcome->records.size() + outcome->summary.skipped, 60U);
+        else
+            EXPECT_GT(outcome->records.back().slot, 90U) << symbol;
+    }
+}
+
+TEST(WindowWalk, KeysOfAWindowThatMayNotSteerDoNothing) {
+#ifdef SUREFOOT_WATCHES_THREADS
+    GTEST_SKIP() << "drivers cannot be opened under the thread sanitizer";
+#endif
+    auto server = test::XServer::start("320x240x24");
+    if (!server) GTEST_SKIP() << server.error().text();
+    auto visitor = test::XVisitor::come();
+    if (!visitor) GTEST_SKIP() << visitor.error().text();
+    walk::WalkRequest request = test::Forest::get().virtual_request(0);
+    request.given_path = second_of_path();
+    test::ScreenPicture screen;
+    const auto outcome = walk_in_window(request, [&] {
+        (*visitor)->tap('w');
+        (*visitor)->tap(symbol_f11);
+        (*visitor)->tap(symbol_escape);
+        (*visitor)->close((*visitor)->find_window());
+        wait_ms(300);
+        screen = (*visitor)->look_at_screen();
+    });
+    ASSERT_TRUE(outcome.ok()) << outcome.error().text();
+    EXPECT_FALSE(outcome->left);
+    EXPECT_FALSE(outcome->stopped);
+    EXPECT_FALSE(outcome->summary.input.given) << "it follows its path, as without a window";
+    EXPECT_EQ(outcome->records.size() + outcome->summary.skipped, 60U);
+    EXPECT_EQ(screen.at(200, 200), test::ScreenPixel{}) << "it keeps its size";
+}
+
+TEST(WindowWalk, AProlongedWalkEndsWithAMessageWhenNoMoreIsKept) {
+#ifdef SUREFOOT_WATCHES_THREADS
+    GTEST_SKIP() << "drivers cannot be opened under the thread sanitizer";
+#endif
+    auto server = test::XServer::start("320x240x24");
+    if (!server) GTEST_SKIP() << server.error().text();
+    walk::WalkRequest request = test::Forest::get().virtual_request(0);
+    request.input_file = walk::window_input;
+    request.may_leave = request.may_steer = true;
+    request.given_path = second_of_path();
+    request.max_kept_frames = 70;
+    const auto outcome = walk_in_window(request, [] {});
+    ASSERT_TRUE(outcome.ok()) << outcome.error().text();
+    EXPECT_FALSE(outcome->left);
+    EXPECT_FALSE(outcome->stopped);
+    EXPECT_EQ(outcome->records.size(), 70U);
+    ASSERT_FALSE(outcome->notes.empty());
+    EXPECT_EQ(outcome->notes.back().find("The walk ended after 70 frames: no more are kept."), 0U) << outcome->notes.back();
 }
 
 TEST(WindowThread, ClosingTheWindowLeavesUnlessNobodyMay) {
