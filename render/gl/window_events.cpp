@@ -31,9 +31,6 @@ std::int64_t monotonic_ns() {
     return t.tv_sec * std::int64_t{1'000'000'000} + t.tv_nsec;
 }
 
-/// What the server refuses is left undone: Xlib's own handler would end the process, for a window that was not shown yet.
-int pass_over_error(x11::Display* /*display*/, void* /*error*/) { return 0; }
-
 }  // namespace
 
 Result<std::shared_ptr<WindowEvents>> WindowEvents::open(model::Viewport viewport, const std::string& title, bool fullscreen) {
@@ -46,9 +43,13 @@ Result<std::shared_ptr<WindowEvents>> WindowEvents::open(model::Viewport viewpor
     window->display_ = x->OpenDisplay(where);
     if (window->display_ == nullptr)
         return Error{"window", std::string("No X server answers at DISPLAY ") + where, remedy, ErrorKind::no_device};
-    x->SetErrorHandler(pass_over_error);
+    x11::count_refusals(*x);
+    const std::uint32_t before = x11::refusals().count;
     window->fullscreen_ = fullscreen;
     window->show(viewport, title);
+    if (const x11::Refusals after = x11::refusals(); after.count != before)
+        return Error{"window", "The X server refuses the window: " + after.text(), "Choose another --size, or use --backend egl",
+                     ErrorKind::no_device};
     window->times_ = PresentTimes::open(window->window_);
     return window;
 }

@@ -136,6 +136,20 @@ TEST(WindowOnServer, FillsAnySizeInItsOwnShapeWithBlackBesideIt) {
     events_until(*window, [](const WindowEvent& e) { return e.kind == Kind::resized && e.x == 160; });
 }
 
+TEST(WindowOnServer, ARefusedWindowIsAnErrorThatNamesTheRequest) {
+    auto server = test::XServer::start();
+    if (!server) GTEST_SKIP() << server.error().text();
+    const auto visitor = test::XVisitor::come();  // without a connection the server would start anew
+    if (!visitor) GTEST_SKIP() << visitor.error().text();
+    const std::uint32_t before = gl::x11::refusals().count;
+    const auto refused = gl::WindowEvents::open({0, 64}, "test", false);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().what.find("refuses the window: Bad"), std::string::npos) << refused.error().text();
+    EXPECT_GT(gl::x11::refusals().count, before);
+    const auto good = gl::WindowEvents::open({64, 64}, "test", false);
+    EXPECT_TRUE(good.ok()) << (good.ok() ? "" : good.error().text()) << ": a refusal of before is not this one's";
+}
+
 TEST(WindowOnServer, ItsVisitorsEventsArrive) {
     auto server = test::XServer::start();
     if (!server) GTEST_SKIP() << server.error().text();

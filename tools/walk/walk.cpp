@@ -232,6 +232,20 @@ void record_loss(const Session& s, WalkOutcome& outcome) {
                                      "Start again, and see the kernel's log for resets of the GPU", ErrorKind::no_device});
 }
 
+void end_window(Session& s, WalkOutcome& outcome) {
+    if (!s.window) return;
+    s.window->stop();
+    outcome.left = s.window->left().load();
+    if (std::string refused = s.window->refused(); !refused.empty()) outcome.notes.push_back(std::move(refused));
+}
+
+/// A walk that a visitor prolongs has no length that he gave, so its end must be explained.
+void add_length_message(const Session& s, std::uint64_t seen, WalkOutcome& outcome) {
+    if (!s.prolonged.load() || seen + s.facts.dropped_records < s.request.max_kept_frames) return;
+    outcome.notes.push_back(fmt::format(
+        "The walk ended after {} frames: no more are kept. Start it again, or let surefootd run it, which keeps none.", seen));
+}
+
 }  // namespace
 
 Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress, const WalkObserver& observer) {
@@ -282,14 +296,9 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     s.facts.dropped_records = ring.dropped();
     outcome.records = recorder.take_records();
     record_loss(s, outcome);
-    if (s.window) s.window->stop();
-    outcome.left = s.window && s.window->left().load();
+    end_window(s, outcome);
     outcome.stopped = progress.stopped() && !outcome.left && (request.endless || s.prolonged.load() || seen < s.frames);
-    if (s.prolonged.load() && !outcome.stopped && !outcome.left && !s.lost)
-        outcome.notes.push_back(
-            fmt::format("The walk ended after {} frames: no more are kept. Start it again, or let surefootd "
-                        "run it, which keeps none.",
-                        seen));
+    add_length_message(s, seen, outcome);
     if (s.input) outcome.summary.input = s.input->summary(outcome.records);
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
     if (s.window) outcome.summary.display = s.window->displayed();

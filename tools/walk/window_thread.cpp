@@ -1,6 +1,7 @@
 // The loop of the window's thread.
 #include "tools/walk/window_thread.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -23,6 +24,7 @@ WindowThread::WindowThread(std::shared_ptr<gl::WindowEvents> window, WindowThrea
     : window_(std::move(window)),
       options_(std::move(options)),
       placement_(std::move(placement)),
+      refused_before_(gl::x11::refusals().count),
       wake_fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
     if (window_->present_times() != nullptr) shown_ms_.reserve(max_shown);
     thread_ = std::thread([this] { run(); });
@@ -80,6 +82,12 @@ report::DisplaySummary WindowThread::displayed() const {
     summary.replaced = replaced_;
     if (!shown_ms_.empty()) summary.after_ms = quantiles(shown_ms_);
     return summary;
+}
+
+std::string WindowThread::refused() const {
+    const gl::x11::Refusals now = gl::x11::refusals();
+    if (now.count == refused_before_) return {};
+    return fmt::format("The X server refused requests of the window: {}. The last: {}.", now.count - refused_before_, now.text());
 }
 
 void WindowThread::take_events(input::WindowReports& reports) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <latch>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -38,6 +40,8 @@ public:
     [[nodiscard]] report::DisplaySummary displayed() const;
     /// Set once the visitor has closed the window or pressed Escape. For any thread.
     [[nodiscard]] const std::atomic<bool>& left() const { return left_; }
+    /// After stop(): what the X server refused meanwhile, a sentence; empty: nothing.
+    [[nodiscard]] std::string refused() const;
     /// The error if it could not be placed.
     [[nodiscard]] const std::optional<Error>& misplaced() const { return misplaced_; }
 
@@ -51,6 +55,7 @@ private:
     WindowThreadOptions options_;
     rt::Placement placement_;
     std::optional<Error> misplaced_;  ///< written before placed_
+    std::uint32_t refused_before_;    ///< requests of this process, before the thread began
     std::latch placed_{1};
     std::atomic<bool> left_{false}, stopping_{false};
     int wake_fd_;
