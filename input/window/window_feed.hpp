@@ -13,8 +13,8 @@
 
 namespace surefoot::input {
 
-/// One thread pushes, one takes. Neither waits, allocates or locks. Where the taker is too slow, reports are summed up in two:
-/// one with every key that was down meanwhile and all pixels, then one with the keys as they are now. So no press is lost.
+/// One thread pushes, one takes. Neither waits, allocates or locks. Where the taker is too slow, reports are summed up in two.
+/// The first has every key that was down meanwhile, and all pixels. The second has the keys as they are now. So no press is lost.
 class WindowFeed {
 public:
     WindowFeed();

@@ -26,7 +26,7 @@ enum class WindowCommand : std::uint8_t {
     capture,     ///< hold the pointer, hidden, and put it into the middle
     release,     ///< let it go
     centre,      ///< put it into the middle again
-    fullscreen,  ///< fill the screen, or end that
+    fullscreen,  ///< F11 switches full screen on and off
 };
 
 /// The keys that are down and the pointer's state. One thread. Neither allocates nor reads a clock.

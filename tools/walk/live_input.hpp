@@ -16,8 +16,8 @@ namespace surefoot::walk {
 /// Shows the user a message at once, or adds it to `notes` where nobody listens.
 void notify(const Progress& progress, std::vector<std::string>& notes, std::string text);
 
-/// Whether an emergency stop may latch: of devices always, since a mapping may come with a reload; of a window alone only where
-/// its steering file names a stop, or cannot be read.
+/// Whether an emergency stop may latch. With `input = devices` it always may. A window alone needs a steering file that names a
+/// stop, or cannot be read.
 bool may_latch_stop(const WalkRequest& request);
 
 /// Live devices of a walk, with their messages and the stored stop.

@@ -179,7 +179,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
         if (!path) return path.error();
         s.path = std::move(*path);
     }
-    sit(r, s.path.path);
+    apply_seat(r, s.path.path);
 
     if (s.input && r.walking != rt::WalkingMode::fly) {
         if (model->ground.empty())
