@@ -34,9 +34,9 @@ public:
     [[nodiscard]] double duration_s() const { return duration_s_; }
 
     /// The walk's time begins at start_ns, at the start of `path`, which must outlive this. real_clock: starts the thread.
-    /// A visitor walks on `ground`, which must outlive this too.
+    /// A visitor walks on `ground`. `path_poses` are those of the walk if nobody steers. Both must outlive this too.
     void begin(const Path& path, const model::Ground& ground, std::int64_t start_ns, bool real_clock,
-               const rt::Placement& placement);
+               const rt::Placement& placement, PathPoses* path_poses = nullptr);
     /// For the frame thread; after begin().
     [[nodiscard]] PoseSource& poses() { return *poses_; }
     /// For the prepare thread: poses that the eye jumps to by a button.

@@ -72,6 +72,7 @@ void InputStepper::publish(const input::NavigationSample& sample, std::int64_t n
     out.reports = source_.log().count();
     out.jumps = jumps;
     out.touring = tour_controller_.touring();
+    out.on_schedule = tour_controller_.on_schedule();
     shown_used_.store(!out.touring || out.reports > 0, std::memory_order_relaxed);
     out.walking = walking_.walks();
     out.on_foot = walking_.stands(sample);

@@ -27,7 +27,8 @@ struct SteeredSample {
     std::uint64_t reports = 0;  ///< accepted, up to and with this sample
     std::uint32_t jumps = 0;    ///< of the tour controller and of the walker
     bool touring = false;
-    bool on_foot = false;  ///< a step of a walker led to nav.pose, with its feet at `feet`
+    bool on_schedule = false;  ///< nobody has left the path since the walk began
+    bool on_foot = false;      ///< a step of a walker led to nav.pose, with its feet at `feet`
     dvec3 feet{0.0};
     bool walking = false;                            ///< else the eye flies
     model::Barrier barrier = model::Barrier::clear;  ///< what stops the walker

@@ -14,6 +14,7 @@
 #include "rt/threads/guard.hpp"
 #include "tests/gl/x_server.hpp"
 #include "tests/walk/steered_fixture.hpp"
+#include "tools/walk/tour_controller.hpp"
 #include "tools/walk/window_thread.hpp"
 
 namespace surefoot {
@@ -272,9 +273,14 @@ TEST(WindowWalk, AnyKeyProlongsItAPauseToo) {
         });
         ASSERT_TRUE(outcome.ok()) << outcome.error().text();
         EXPECT_EQ(outcome->left, symbol != 0) << symbol;
-        if (symbol == 0)
+        if (symbol == 0) {
             EXPECT_EQ(outcome->records.size(), 60U);
-        else
+            for (const rt::FrameRecord& r : outcome->records)
+                EXPECT_LT(
+                    glm::length(test::eye(r) - walk::pose_at(*request.given_path, static_cast<double>(r.slot) / 60.0).position),
+                    1e-6)
+                    << "frame " << r.frame << ": as on the path alone";
+        } else
             EXPECT_GE(outcome->records.size(), 75U) << symbol;
     }
 }
