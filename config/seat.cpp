@@ -13,7 +13,7 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 constexpr double usual_acuity_arcmin = 1;
-constexpr double widest_side_deg = 89, narrowest_fov_deg = 0.1;  // what projections hold
+constexpr double widest_side_deg = 89, min_fov_deg = 0.1;  // what projections hold
 
 }  // namespace
 
@@ -52,11 +52,10 @@ std::optional<SeatProblem> seat_problem(const Settings& s) {
                            fmt::format("The picture reaches {:.2f} degrees to one side, and at most {:g} can be drawn",
                                        std::atan(side) * degrees, widest_side_deg),
                            "Raise the distance, or lower screen_width_cm or the shift"};
-    if (std::min(seat->fov_x_rad, seat->fov_y_rad) < narrowest_fov_deg / degrees)
-        return SeatProblem{
-            "eye_distance_cm",
-            fmt::format("The field of view is {}, and at least {:g} can be drawn", seat_text(*seat), narrowest_fov_deg),
-            "Lower the distance, or raise screen_width_cm"};
+    if (std::min(seat->fov_x_rad, seat->fov_y_rad) < min_fov_deg / degrees)
+        return SeatProblem{"eye_distance_cm",
+                           fmt::format("The field of view is {}, and at least {:g} can be drawn", seat_text(*seat), min_fov_deg),
+                           "Lower the distance, or raise screen_width_cm"};
     return std::nullopt;
 }
 

@@ -95,6 +95,21 @@ DeviceMapping window_mapping(std::span<const DeviceMapping> mappings, double deg
     return usual_mapping(deg_per_px);
 }
 
+std::uint64_t stop_keys(const DeviceMapping& mapping) {
+    std::uint64_t bits = 0;
+    const auto keys = window_keys();
+    for (const ButtonMapping& button : mapping.buttons) {
+        if (button.action != Action::stop) continue;
+        const ControlRef& of = button.control;
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            const bool meant = of.name.empty() ? of.usage_page == keyboard_page && of.usage == keys[i].usage
+                                               : of.name == "key-" + std::string(keys[i].name);
+            if (meant) bits |= std::uint64_t{1} << i;
+        }
+    }
+    return bits;
+}
+
 void fill_state(const WindowReport& report, DeviceState& state) {
     const std::size_t keys = window_keys().size();
     for (std::size_t i = 0; i < keys; ++i) state.value[i] = static_cast<std::int32_t>((report.keys >> i) & 1U);

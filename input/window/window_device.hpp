@@ -24,6 +24,8 @@ constexpr std::string_view window_device_name = "window";
 std::vector<ControlInfo> window_controls();
 /// The first mapping that names the window; else the usual keys. deg_per_px: turn for each pixel of the pointer.
 DeviceMapping window_mapping(std::span<const DeviceMapping> mappings, double deg_per_px);
+/// The keys that stop under a mapping: a bit each, in the order of window_keys().
+std::uint64_t stop_keys(const DeviceMapping& mapping);
 /// index-parallel to window_controls().
 void fill_state(const WindowReport& report, DeviceState& state);
 

@@ -14,26 +14,33 @@ WindowFeed::~WindowFeed() {
 
 void WindowFeed::push(const WindowReport& report) {
     pushes_.plays();
-    if (waits_) {
-        waiting_.keys = report.keys;
-        waiting_.dx += report.dx;
-        waiting_.dy += report.dy;
-        waiting_.stamp_ns = report.stamp_ns;
+    if (waits_ == 0) {
+        waiting_[0] = report;
+        waits_ = 1;
     } else {
-        waiting_ = report;
+        WindowReport& sum = waiting_[0];
+        sum.keys |= report.keys;
+        sum.dx += report.dx;
+        sum.dy += report.dy;
+        sum.stamp_ns = report.stamp_ns;
+        waiting_[1] = report;
+        waiting_[1].dx = waiting_[1].dy = 0;
+        waits_ = 2;
     }
-    waits_ = true;
     (void)flush();
 }
 
 bool WindowFeed::flush() {
     pushes_.plays();
-    if (!waits_) return true;
-    if (ring_.full()) return false;
-    waits_ = !ring_.try_push(waiting_);
+    bool pushed = false;
+    while (waits_ > 0 && !ring_.full() && ring_.try_push(waiting_[0])) {
+        waiting_[0] = waiting_[1];
+        --waits_;
+        pushed = true;
+    }
     constexpr std::uint64_t one = 1;
-    if (event_fd_ >= 0) (void)!::write(event_fd_, &one, sizeof one);
-    return !waits_;
+    if (pushed && event_fd_ >= 0) (void)!::write(event_fd_, &one, sizeof one);
+    return waits_ == 0;
 }
 
 bool WindowFeed::take(WindowReport& report) {

@@ -3,6 +3,8 @@
 
 #include <poll.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "input/window/window_reports.hpp"
@@ -11,8 +13,8 @@
 
 namespace surefoot::input {
 
-/// One thread pushes, one takes. Neither waits, allocates or locks. Where the taker is too slow, reports are summed up: keys are
-/// as they are now, and no pixel is lost.
+/// One thread pushes, one takes. Neither waits, allocates or locks. Where the taker is too slow, reports are summed up in two.
+/// The first has every key that was down meanwhile, and all pixels. The second has the keys as they are now. So no press is lost.
 class WindowFeed {
 public:
     WindowFeed();
@@ -32,9 +34,9 @@ public:
 private:
     [[no_unique_address]] ThreadRole pushes_;
     rt::SpscRing<WindowReport> ring_{1024};
-    WindowReport waiting_ GUARDED_BY(pushes_);
-    bool waits_ GUARDED_BY(pushes_) = false;
-    int event_fd_;  ///< -1: none could be had; then the taker's own rhythm serves
+    std::array<WindowReport, 2> waiting_ GUARDED_BY(pushes_);  ///< the sum, then the newest keys
+    std::size_t waits_ GUARDED_BY(pushes_) = 0;                ///< how many of them
+    int event_fd_;                                             ///< -1: none could be had; then the taker's own rhythm serves
 };
 
 }  // namespace surefoot::input

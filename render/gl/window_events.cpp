@@ -20,6 +20,7 @@ constexpr long key_press_mask = 1L << 0, key_release_mask = 1L << 1, button_pres
 constexpr long wanted_events = key_press_mask | key_release_mask | button_press_mask | button_release_mask | leave_mask |
                                motion_mask | keymap_mask | structure_mask | focus_mask;
 constexpr unsigned pointer_events = static_cast<unsigned>(button_press_mask | button_release_mask | motion_mask);
+constexpr int notify_pointer = 5;  // a detail of FocusIn
 constexpr int revert_to_root = 1, grab_asynchronously = 1, replace = 0;
 constexpr x11::Id atom_of_atoms = 4, any_type = 0;
 constexpr unsigned long now = 0;
@@ -29,9 +30,6 @@ std::int64_t monotonic_ns() {
     clock_gettime(CLOCK_MONOTONIC, &t);
     return t.tv_sec * std::int64_t{1'000'000'000} + t.tv_nsec;
 }
-
-/// What the server refuses is left undone: Xlib's own handler would end the process, for a window that was not shown yet.
-int pass_over_error(x11::Display* /*display*/, void* /*error*/) { return 0; }
 
 }  // namespace
 
@@ -45,9 +43,13 @@ Result<std::shared_ptr<WindowEvents>> WindowEvents::open(model::Viewport viewpor
     window->display_ = x->OpenDisplay(where);
     if (window->display_ == nullptr)
         return Error{"window", std::string("No X server answers at DISPLAY ") + where, remedy, ErrorKind::no_device};
-    x->SetErrorHandler(pass_over_error);
+    x11::count_refusals(*x);
+    const std::uint32_t before = x11::refusals().count;
     window->fullscreen_ = fullscreen;
     window->show(viewport, title);
+    if (const x11::Refusals after = x11::refusals(); after.count != before)
+        return Error{"window", "The X server refuses the window: " + after.text(), "Choose another --size, or use --backend egl",
+                     ErrorKind::no_device};
     window->times_ = PresentTimes::open(window->window_);
     return window;
 }
@@ -142,6 +144,8 @@ bool WindowEvents::translate(x11::Event& from, WindowEvent& event) {
             event.code = from.type == motion_notify ? 0 : from.pointer.detail;
             event.x = from.pointer.x;
             event.y = from.pointer.y;
+            event.x_screen = from.pointer.x_root;
+            event.y_screen = from.pointer.y_root;
             return true;
         case leave_notify:
             event.kind = Kind::pointer_out;
@@ -149,7 +153,8 @@ bool WindowEvents::translate(x11::Event& from, WindowEvent& event) {
         case focus_in:
         case focus_out:
             event.kind = from.type == focus_in ? Kind::focus_in : Kind::focus_out;
-            return true;
+            // Keys come only while the pointer is here: the window does not own the keyboard.
+            return from.type == focus_out || from.focus.detail != notify_pointer;
         case keymap_notify:
             event.kind = Kind::held_keys;
             std::copy_n(from.keymap.keys, event.held.size(), event.held.begin());

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <string>
 
 #include "rt/base/result.hpp"
 
@@ -50,9 +52,22 @@ struct Functions {
     void* (*SetErrorHandler)(int (*)(Display*, void*)) = nullptr;
     Id (*KeycodeToKeysym)(Display*, unsigned char, int, int) = nullptr;
     int (*SetDetectableAutoRepeat)(Display*, int, int*) = nullptr;
+    int (*InitThreads)() = nullptr;  ///< null where the library lacks it
 };
 
+/// Prepares the library for threads too. Call it before the process opens its first connection.
 Result<Functions> load();
+
+/// Requests of this process that X servers have refused so far, and the last of them by its protocol numbers.
+struct Refusals {
+    std::uint32_t count = 0;
+    int error = 0, request = 0;  ///< of the last
+    /// "BadValue (error 2) of request 1"; empty where there is none.
+    [[nodiscard]] std::string text() const;
+};
+Refusals refusals();
+/// Counts refused requests from now on. Xlib's own handler would end the process.
+void count_refusals(const Functions& x);
 
 /// What all events begin with.
 struct AnyEvent {
@@ -83,10 +98,25 @@ struct CrossingEvent {
     unsigned state;
 };
 
+/// FocusIn and FocusOut.
+struct FocusEvent {
+    AnyEvent any;
+    int mode, detail;
+};
+
 /// KeymapNotify: the keys that are down, a bit a code.
 struct KeymapEvent {
     AnyEvent any;
     unsigned char keys[32];
+};
+
+/// XErrorEvent: no event of the queue.
+struct ErrorEvent {
+    int type;
+    Display* display;
+    Id resource;
+    unsigned long serial;
+    unsigned char error, request, minor;
 };
 
 /// ConfigureNotify.
@@ -112,6 +142,7 @@ union Event {
     AnyEvent any;
     PointerEvent pointer;
     CrossingEvent crossing;
+    FocusEvent focus;
     KeymapEvent keymap;
     ConfigureEvent configure;
     MessageEvent message;

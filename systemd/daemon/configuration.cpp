@@ -80,6 +80,7 @@ walk::WalkRequest request_of(const config::Configuration& configuration, const s
     walk::apply_settings(configuration, request);
     request.config_file = config_file;
     request.endless = true;
+    request.may_steer = true;
     request.may_leave = false;  // a visitor must not end the service
     return request;
 }

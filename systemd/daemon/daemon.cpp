@@ -21,6 +21,7 @@
 #include "systemd/daemon/service.hpp"
 #include "systemd/daemon/service_state.hpp"
 #include "tools/monitor/monitor.hpp"
+#include "tools/walk/live_input.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::daemon {
@@ -74,7 +75,7 @@ walk::WalkObserver observer_of(Log& log, ServiceState& state, Bursts& bursts, co
 
 /// Checks before the first frame that an emergency stop can be stored. Otherwise the next start would forget it.
 Result<void> check_state(const walk::WalkRequest& request) {
-    if (!walk::is_steered_live(request)) return {};
+    if (!walk::may_latch_stop(request)) return {};
     const std::string file = walk::state_directory(request.state_dir) + "/probe";
     auto probe = AtomicFile::create(file);
     if (!probe) return probe.error();

@@ -82,6 +82,31 @@ TEST(Faults, AStateFolderThatCannotBeWrittenIsKnownAtTheStart) {
     EXPECT_EQ(daemon.lines_with("The emergency stop cannot be stored in the state folder"), 1) << daemon.log_text();
 }
 
+TEST(Faults, AWindowWithoutAStopNeedsNoStateFolder) {
+    Running daemon("window-no-state");
+    EXPECT_TRUE(write_text(daemon.dir + "/file", "").ok());
+    daemon.environment = {{"DISPLAY", ""}};
+    daemon.write_config("", "window");
+    daemon.start({"--set", "state=" + daemon.dir + "/file"});
+    EXPECT_EQ(daemon.wait_exit(start_s), exit_unavailable) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("The emergency stop cannot be stored"), 0) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("DISPLAY is not set"), 1) << "it came as far as its window: " << daemon.log_text();
+}
+
+TEST(Faults, AWindowWithAStopNeedsTheStateFolder) {
+    Running daemon("window-stop-no-state");
+    EXPECT_TRUE(write_text(daemon.dir + "/file", "").ok());
+    EXPECT_TRUE(
+        write_text(daemon.dir + "/keys.toml",
+                   "[[device]]\nproduct_name = \"window\"\n[[device.button]]\ncontrol = \"key-space\"\naction = \"stop\"\n")
+            .ok());
+    daemon.environment = {{"DISPLAY", ""}};
+    daemon.write_config("steering = \"keys.toml\"\n", "window");
+    daemon.start({"--set", "state=" + daemon.dir + "/file"});
+    EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("The emergency stop cannot be stored in the state folder"), 1) << daemon.log_text();
+}
+
 TEST(Faults, AFullDiskIsKnownAtTheStart) {
     Running daemon("full-disk");
     daemon.write_config("input = \"devices\"\n");

@@ -136,6 +136,20 @@ TEST(WindowOnServer, FillsAnySizeInItsOwnShapeWithBlackBesideIt) {
     events_until(*window, [](const WindowEvent& e) { return e.kind == Kind::resized && e.x == 160; });
 }
 
+TEST(WindowOnServer, ARefusedWindowIsAnErrorThatNamesTheRequest) {
+    auto server = test::XServer::start();
+    if (!server) GTEST_SKIP() << server.error().text();
+    const auto visitor = test::XVisitor::come();  // without a connection the server would start anew
+    if (!visitor) GTEST_SKIP() << visitor.error().text();
+    const std::uint32_t before = gl::x11::refusals().count;
+    const auto refused = gl::WindowEvents::open({0, 64}, "test", false);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().what.find("refuses the window: Bad"), std::string::npos) << refused.error().text();
+    EXPECT_GT(gl::x11::refusals().count, before);
+    const auto good = gl::WindowEvents::open({64, 64}, "test", false);
+    EXPECT_TRUE(good.ok()) << (good.ok() ? "" : good.error().text()) << ": a refusal of before is not this one's";
+}
+
 TEST(WindowOnServer, ItsVisitorsEventsArrive) {
     auto server = test::XServer::start();
     if (!server) GTEST_SKIP() << server.error().text();
@@ -172,6 +186,8 @@ TEST(WindowOnServer, ItsVisitorsEventsArrive) {
     EXPECT_EQ(pressed->code, 1U);
     EXPECT_EQ(events.back().x - pressed->x, 20);
     EXPECT_EQ(events.back().y - pressed->y, -5);
+    EXPECT_EQ(pressed->x_screen, 50);
+    EXPECT_EQ(pressed->y_screen, 60);
 
     ASSERT_TRUE(window.capture());
     window.centre_pointer();
@@ -186,6 +202,12 @@ TEST(WindowOnServer, ItsVisitorsEventsArrive) {
     (*visitor)->key('a', false);
     const auto released = events_until(window, Kind::key_up).back();
     EXPECT_TRUE(((events.back().held[released.code / 8] >> (released.code % 8)) & 1U) != 0) << "it was held before";
+
+    (*visitor)->move_to(50, 60);
+    (*visitor)->let_focus_follow_pointer();
+    (*visitor)->tap('s');
+    events = events_until(window, Kind::key_up);
+    EXPECT_EQ(std::ranges::count(events, Kind::focus_in, &WindowEvent::kind), 0) << "the keyboard is the pointer's";
     (*visitor)->close(window.id());
     events_until(window, Kind::close);
 }

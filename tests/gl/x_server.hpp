@@ -164,6 +164,11 @@ public:
         x_.SetInputFocus(display_, window, 1, 0);
         x_.Sync(display_, 0);
     }
+    /// The keyboard follows the pointer: no window owns it.
+    void let_focus_follow_pointer() {
+        x_.SetInputFocus(display_, 1, 0, 0);
+        x_.Sync(display_, 0);
+    }
     void resize(Id window, unsigned width, unsigned height) {
         x_.MoveResizeWindow(display_, window, 0, 0, width, height);
         x_.Sync(display_, 0);

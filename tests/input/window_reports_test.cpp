@@ -29,6 +29,8 @@ WindowEvent at(Kind kind, std::int32_t x, std::int32_t y, std::uint32_t button =
     e.kind = kind;
     e.x = x;
     e.y = y;
+    e.x_screen = x + 30;  // the window's place
+    e.y_screen = y + 20;
     e.code = button;
     return e;
 }
@@ -104,14 +106,57 @@ TEST(WindowReports, LosingTheFocusReleasesAllKeysAndTheDrag) {
 TEST(WindowReports, AKeyThatWasHeldWhenTheFocusCameCountsOnceItWasUp) {
     Window w;
     w.take(plain(Kind::focus_in));
-    WindowEvent held = plain(Kind::held_keys);
-    held.held[25 / 8] = 1U << (25 % 8);
-    w.take(held);
+    WindowEvent before = plain(Kind::held_keys);
+    before.held[25 / 8] = 1U << (25 % 8);
+    w.take(before);
     w.press(25, 'w');  // it repeats
     EXPECT_EQ(w.keys(), 0U);
     w.lift(25, 'w');
     w.press(25, 'w');
     EXPECT_EQ(w.keys(), bit_of('w'));
+}
+
+WindowEvent held(std::initializer_list<std::uint32_t> codes) {
+    WindowEvent e = plain(Kind::held_keys);
+    for (const std::uint32_t code : codes) e.held[code / 8] = static_cast<std::uint8_t>(e.held[code / 8] | 1U << (code % 8));
+    return e;
+}
+
+TEST(WindowReports, AKeyThatWentUpUnseenIsReleased) {
+    Window w;
+    w.press(25, 'w');
+    w.press(40, 'd');
+    EXPECT_TRUE(w.reports.take(held({40})).reports);
+    EXPECT_EQ(w.keys(), bit_of('d'));
+    EXPECT_FALSE(w.reports.take(held({40})).reports) << "nothing is new";
+    w.lift(40, 'd');
+    EXPECT_EQ(w.keys(), 0U);
+}
+
+TEST(WindowReports, WhatWasHeldOnceSwallowsNoLaterPress) {
+    Window w;
+    w.take(held({9, 25}));  // the pointer came, and left: without the focus no release is seen
+    w.take(held({}));
+    EXPECT_EQ(w.press(9, symbol_escape), Command::leave);
+    w.lift(9, symbol_escape);
+    w.take(held({9}));
+    w.take(plain(Kind::focus_in));
+    EXPECT_EQ(w.press(9, symbol_escape), Command::leave);
+    w.lift(9, symbol_escape);
+    w.take(held({9}));
+    w.take(plain(Kind::focus_out));
+    EXPECT_EQ(w.press(9, symbol_escape), Command::leave);
+}
+
+TEST(WindowReports, AStopThatIsHeldWhenTheFocusComesStops) {
+    WindowReports reports(800, 600, bit_of(' '));
+    reports.take(plain(Kind::focus_in));
+    reports.take(held({25, 65}));
+    EXPECT_FALSE(reports.take(key(Kind::key_down, 25, 'w')).reports);
+    EXPECT_TRUE(reports.take(key(Kind::key_down, 65, ' ')).reports) << "it repeats";
+    EXPECT_EQ(reports.report().keys, bit_of(' '));
+    EXPECT_TRUE(reports.take(key(Kind::key_up, 65, ' ')).reports);
+    EXPECT_EQ(reports.report().keys, 0U);
 }
 
 TEST(WindowReports, WhereTheKeyboardFollowsThePointerItsLeavingReleasesTheKeys) {
@@ -162,6 +207,45 @@ TEST(WindowReports, ACapturedPointerTurnsWithoutEnd) {
     EXPECT_EQ(w.dx, 3000);
 }
 
+TEST(WindowReports, AWindowThatIsMovedOrResizedTurnsNothing) {
+    Window w;
+    w.take(at(Kind::button_down, 200, 200, 1));
+    WindowEvent moved = at(Kind::motion, 120, 160);  // by 80 and 40: the pointer stays on the screen
+    moved.x_screen += 80;
+    moved.y_screen += 40;
+    w.take(moved);
+    EXPECT_EQ(w.dx, 0);
+    EXPECT_EQ(w.dy, 0);
+    moved.x += 5;
+    moved.x_screen += 5;
+    w.take(moved);
+    EXPECT_EQ(w.dx, 5);
+}
+
+TEST(WindowReports, TheWayToAMiddleOfAnEarlierSizeTurnsNothing) {
+    Window w;
+    w.take(at(Kind::button_down, 700, 100, 3));
+    w.take(at(Kind::resized, 1600, 1200));
+    w.take(at(Kind::motion, 400, 300));  // ordered before
+    EXPECT_EQ(w.dx, 0);
+    EXPECT_EQ(w.take(at(Kind::motion, 401, 300)), Command::none) << "a quarter of the new width is not passed";
+    EXPECT_EQ(w.take(at(Kind::motion, 390, 290)), Command::centre);
+    w.take(at(Kind::motion, 800, 600));
+    EXPECT_EQ(w.dx, -10);
+}
+
+TEST(WindowReports, CentringThatNeverComesIsOrderedAgain) {
+    Window w;
+    w.take(at(Kind::button_down, 400, 300, 3));  // it is in the middle already: no event comes
+    int ordered = 0;
+    for (int i = 1; i <= 300; ++i) ordered += w.take(at(Kind::motion, 400 + i, 300)) == Command::centre ? 1 : 0;
+    EXPECT_GE(ordered, 1);
+    EXPECT_LE(ordered, 3);
+    EXPECT_EQ(w.dx, 300);
+    w.take(at(Kind::resized, 600, 600));
+    EXPECT_EQ(w.take(at(Kind::motion, 590, 300)), Command::centre) << "a new size needs no waiting";
+}
+
 TEST(WindowReports, EscapeReleasesTheCapturedPointerFirstAndItsRepeatsDoNotLeave) {
     Window w;
     w.take(at(Kind::button_down, 10, 10, 3));
@@ -205,6 +289,32 @@ TEST(WindowFeed, SumsUpWhatFindsNoRoomAndLosesNoRelease) {
     for (WindowReport taken; feed.take(taken); last = taken) dx += taken.dx;
     EXPECT_EQ(dx, 5000);
     EXPECT_EQ(last.keys, 0U);
+}
+
+TEST(WindowFeed, ATapWithinTheOverflowIsPressedAndReleased) {
+    WindowFeed feed;
+    WindowReport report;
+    report.dx = 1;
+    while (feed.flush()) feed.push(report);  // the last one finds no room
+    report.dx = 0;
+    for (const std::uint64_t keys : {4U, 0U, 8U, 9U, 1U}) {
+        report.keys = keys;
+        ++report.stamp_ns;
+        feed.push(report);
+    }
+    WindowReport taken;
+    ASSERT_TRUE(feed.take(taken));
+    EXPECT_FALSE(feed.flush()) << "there is room for one of two";
+    while (feed.take(taken) && taken.keys == 0) {
+    }
+    EXPECT_EQ(taken.keys, 4U | 8U | 1U) << "all that were pressed meanwhile";
+    EXPECT_EQ(taken.dx, 1);
+    EXPECT_TRUE(feed.flush());
+    ASSERT_TRUE(feed.take(taken));
+    EXPECT_EQ(taken.keys, 1U) << "then those that are still down";
+    EXPECT_EQ(taken.dx, 0);
+    EXPECT_EQ(taken.stamp_ns, 5);
+    EXPECT_FALSE(feed.take(taken));
 }
 
 }  // namespace

@@ -222,6 +222,19 @@ deg_per_count = 1
     EXPECT_LT(rig.sample.velocity_m_s.z, -1);
 }
 
+TEST(WindowSteering, TheKeysThatStopAreKnown) {
+    const auto file = parse_steering(
+        "[[device]]\nproduct_name = \"window\"\n"
+        "[[device.button]]\ncontrol = \"key-w\"\naction = \"forward\"\n"
+        "[[device.button]]\ncontrol = \"key-space\"\naction = \"stop\"\n"
+        "[[device.button]]\ncontrol = \"0x07:0x28\"\naction = \"stop\"\n",
+        "test.toml");
+    ASSERT_TRUE(file.ok()) << file.error().text();
+    const auto bit = [](std::uint32_t symbol) { return std::uint64_t{1} << static_cast<unsigned>(window_key_of(symbol)); };
+    EXPECT_EQ(stop_keys(window_mapping(file->devices, 0.15)), bit(' ') | bit(0xff0d)) << "the second by its usage";
+    EXPECT_EQ(stop_keys(window_mapping({}, 0.15)), 0U) << "by default none does";
+}
+
 TEST(WindowSteering, AMappingForEveryDeviceIsNotTheWindows) {
     WindowRig rig("[[device]]\nname = \"any\"\n[[device.axis]]\ncontrol = \"x\"\naction = \"turn\"\n");
     ASSERT_EQ(rig.source->devices().size(), 1U);

@@ -131,6 +131,12 @@ TEST(SettingsRequest, AWindowSteersUnlessThePathOrARecordingMust) {
     WalkRequest request;
     EXPECT_FALSE(window_steers(request)) << "no window";
     request.backend = gl::window_backend;
+    EXPECT_FALSE(window_steers(request)) << "nor may it, unless the command says so";
+    EXPECT_FALSE(request.may_leave);
+    request.input_file = window_input;
+    EXPECT_EQ(check_request(request).error().what, "Only `surefoot walk` and the service are steered by a window");
+    request.input_file.clear();
+    request.may_steer = true;
     EXPECT_TRUE(window_steers(request)) << "off the path, once somebody does";
     EXPECT_TRUE(check_request(request).ok());
     request.steering_file = "keys.toml";
@@ -159,6 +165,7 @@ TEST(SettingsRequest, AWindowSteersUnlessThePathOrARecordingMust) {
         return checked.ok() ? std::string("fine") : checked.error().place;
     };
     EXPECT_EQ(place([](WalkRequest& r) { r.input_file = window_input; }), "--input window");
+    EXPECT_EQ(place([](WalkRequest& r) { r.input_file = window_input, r.may_steer = true; }), "--input window");
     EXPECT_EQ(place([](WalkRequest& r) { r.fullscreen = true; }), "--fullscreen");
 }
 

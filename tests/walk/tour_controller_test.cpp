@@ -49,6 +49,19 @@ protected:
     std::int64_t now_ns_ = 0;
 };
 
+TEST_F(TourControllerTest, ATourFromTheStartLosesNoTimeInAStallUntilItIsLeft) {
+    tour_controller_.begin_tour(0);
+    run(1);
+    now_ns_ += 1'000'000'000;  // no step for a second
+    run(0.1);
+    EXPECT_NEAR(x(), 21, 1e-6);
+    EXPECT_TRUE(tour_controller_.on_schedule());
+    run(1, 0, &input::NavigationSample::pause);
+    EXPECT_FALSE(tour_controller_.on_schedule());
+    run(1, 0, &input::NavigationSample::pause);
+    EXPECT_NEAR(x(), 31, 0.1) << "it goes on from where it paused";
+}
+
 TEST_F(TourControllerTest, ATourFromTheStartFollowsThePathUntilTheHandMoves) {
     tour_controller_.begin_tour(100 * tick_ns);
     run(0.1);

@@ -116,7 +116,7 @@ Result<ValueShares> value_shares_of_walk(const walk::WalkRequest& walk, ShareReq
     if (!model) return model.error();
     auto path = walk::choose_path(walk.path_file, walk.model_file, *model, walk.lift_m);
     if (!path) return path.error();
-    walk::sit(walk, path->path);
+    walk::apply_seat(walk, path->path);
     std::string note;
     const std::string state = walk::state_directory(walk.state_dir);
     auto table = walk::load_costs(state, "", note);

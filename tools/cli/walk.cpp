@@ -60,6 +60,7 @@ Result<walk::WalkRequest> to_request(WalkArguments& a) {
     if (auto ok = config::check(c); !ok) return ok.error();
     walk::WalkRequest r = a.request;
     walk::apply_settings(c, r);
+    r.may_leave = r.may_steer = true;  // no other command's figures depend on who stands at the window
     if (r.model_file.empty())
         return Error{"MODEL.walk", "The model is not named",
                      "Run: surefoot walk MODEL.walk, or set `model = ...` in the --config file", ErrorKind::misuse};

@@ -68,8 +68,7 @@ std::string seat_words(const WalkSummary& s) {
     if (s.seat.given)
         text = fmt::format("{:g} cm wide at {:g} cm: {:.1f} x {:.1f} degrees", s.seat.screen_width_cm, s.seat.eye_distance_cm,
                            s.seat.fov_x_deg, s.seat.fov_y_deg);
-    if (s.acuity_arcmin > 0)
-        text += fmt::format("{}the eye tells {:.3g} arcmin apart", text.empty() ? "" : "; ", s.acuity_arcmin);
+    if (s.acuity_arcmin > 0) text += fmt::format("{}acuity {:.3g} arcmin", text.empty() ? "" : "; ", s.acuity_arcmin);
     return text;
 }
 

@@ -45,7 +45,10 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
                       request.max_slope_deg * std::numbers::pi / 180, request.edge_m};
     session->motion_ = steering.motion;
     session->motion_.frame_s = static_cast<double>(period_ns) * 1e-9;
-    if (window_steers(request)) session->window_feed_ = std::make_shared<input::WindowFeed>();
+    if (window_steers(request)) {
+        session->window_feed_ = std::make_shared<input::WindowFeed>();
+        session->window_stop_keys_ = input::stop_keys(input::window_mapping(steering.devices, request.pointer_turn_deg));
+    }
     if (is_steered_live(request)) {
         session->begins_touring_ = request.input_file.empty();
         if (request.input_file.empty()) session->source_name_ = window_input;
@@ -66,14 +69,14 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
 }
 
 void InputSession::begin(const Path& path, const model::Ground& ground, std::int64_t start_ns, bool real_clock,
-                         const rt::Placement& placement) {
+                         const rt::Placement& placement, PathPoses* path_poses) {
     tour_controller_ = std::make_unique<TourController>(path);
     if (begins_touring_) tour_controller_->begin_tour(start_ns);
     walking_ = std::make_unique<Walking>(ground, body_, mode_);
     stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *tour_controller_, *walking_, samples_, jump_poses_,
                                               live_ ? live_->keeper() : nullptr);
     if (walking_->walker() != nullptr) clip_.emplace(ground, body_);
-    poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get());
+    poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get(), path_poses);
     stepper_->begin(start_ns);
     if (real_clock) thread_ = std::make_unique<InputThread>(*stepper_, placement);
 }

@@ -34,9 +34,9 @@ public:
     [[nodiscard]] double duration_s() const { return duration_s_; }
 
     /// The walk's time begins at start_ns, at the start of `path`, which must outlive this. real_clock: starts the thread.
-    /// A visitor walks on `ground`, which must outlive this too.
+    /// A visitor walks on `ground`. `path_poses` are those of the walk if nobody steers. Both must outlive this too.
     void begin(const Path& path, const model::Ground& ground, std::int64_t start_ns, bool real_clock,
-               const rt::Placement& placement);
+               const rt::Placement& placement, PathPoses* path_poses = nullptr);
     /// For the frame thread; after begin().
     [[nodiscard]] PoseSource& poses() { return *poses_; }
     /// For the prepare thread: poses that the eye jumps to by a button.
@@ -49,8 +49,10 @@ public:
     [[nodiscard]] bool live() const { return live_.has_value(); }
     /// Where the window's keyboard and mouse are to be pushed to; null where they do not steer.
     [[nodiscard]] const std::shared_ptr<input::WindowFeed>& window_feed() const { return window_feed_; }
-    /// As of the last step: nobody is led along the path. After begin().
-    [[nodiscard]] bool steered() const { return stepper_ && stepper_->shown_steered(); }
+    /// The keys that stop: see input::WindowReports.
+    [[nodiscard]] std::uint64_t window_stop_keys() const { return window_stop_keys_; }
+    /// As of the last step: somebody pressed or moved something. After begin().
+    [[nodiscard]] bool used() const { return stepper_ && stepper_->shown_used(); }
     /// Devices as of the last poll(); what stops the walker as of the last step.
     [[nodiscard]] rt::InputState now() const;
     /// Ends the input thread. Returns the error if the thread could not be placed.
@@ -65,6 +67,7 @@ private:
     std::string source_name_;
     std::optional<LiveInput> live_;
     std::shared_ptr<input::WindowFeed> window_feed_;
+    std::uint64_t window_stop_keys_ = 0;
     bool begins_touring_ = false;  ///< the path is followed until a hand moves
     double duration_s_ = 0;
     std::int64_t period_ns_ = 0;

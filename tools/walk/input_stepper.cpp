@@ -72,7 +72,8 @@ void InputStepper::publish(const input::NavigationSample& sample, std::int64_t n
     out.reports = source_.log().count();
     out.jumps = jumps;
     out.touring = tour_controller_.touring();
-    shown_steered_.store(!out.touring, std::memory_order_relaxed);
+    out.on_schedule = tour_controller_.on_schedule();
+    shown_used_.store(!out.touring || out.reports > 0, std::memory_order_relaxed);
     out.walking = walking_.walks();
     out.on_foot = walking_.stands(sample);
     if (out.on_foot) out.feet = walking_.walker()->feet();

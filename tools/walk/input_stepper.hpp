@@ -27,7 +27,8 @@ struct SteeredSample {
     std::uint64_t reports = 0;  ///< accepted, up to and with this sample
     std::uint32_t jumps = 0;    ///< of the tour controller and of the walker
     bool touring = false;
-    bool on_foot = false;  ///< a step of a walker led to nav.pose, with its feet at `feet`
+    bool on_schedule = false;  ///< nobody has left the path since the walk began
+    bool on_foot = false;      ///< a step of a walker led to nav.pose, with its feet at `feet`
     dvec3 feet{0.0};
     bool walking = false;                            ///< else the eye flies
     model::Barrier barrier = model::Barrier::clear;  ///< what stops the walker
@@ -52,8 +53,8 @@ public:
     void step(std::int64_t now_ns);
     /// Every step that is due by `now_ns`, each at its own time: the same whenever it is called (virtual clock).
     void advance_to(std::int64_t now_ns);
-    /// For any thread: whether somebody walks or stands by hand, as of the last step; else he is led along the path.
-    [[nodiscard]] bool shown_steered() const { return shown_steered_.load(std::memory_order_relaxed); }
+    /// For any thread: whether a report has come, or nobody is led along the path, as of the last step.
+    [[nodiscard]] bool shown_used() const { return shown_used_.load(std::memory_order_relaxed); }
 
 private:
     void publish(const input::NavigationSample& sample, std::int64_t now_ns);
@@ -67,7 +68,7 @@ private:
     input::StopKeeper* keeper_;
     std::uint32_t jumps_reported_ = 0;
     std::int64_t tick_at_ns_ = 0;
-    std::atomic<bool> shown_steered_{false};
+    std::atomic<bool> shown_used_{false};
 };
 
 }  // namespace surefoot::walk

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "tools/walk/settings_request.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::walk {
@@ -29,6 +30,13 @@ Result<void> check_memory(const std::string& file, bool latched) {
 }
 
 }  // namespace
+
+bool may_latch_stop(const WalkRequest& request) {
+    if (request.input_file == live_input) return true;
+    if (!window_steers(request) || request.steering_file.empty()) return false;
+    const auto steering = input::read_steering(request.steering_file);
+    return !steering || input::has_stop(*steering);
+}
 
 Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::SteeringFile& steering,
                                   std::shared_ptr<input::WindowFeed> window, std::vector<std::string>& notes) {

@@ -16,6 +16,10 @@ namespace surefoot::walk {
 /// Shows the user a message at once, or adds it to `notes` where nobody listens.
 void notify(const Progress& progress, std::vector<std::string>& notes, std::string text);
 
+/// Whether an emergency stop may latch. With `input = devices` it always may. A window alone needs a steering file that names a
+/// stop, or cannot be read.
+bool may_latch_stop(const WalkRequest& request);
+
 /// Live devices of a walk, with their messages and the stored stop.
 class LiveInput {
 public:

@@ -76,7 +76,7 @@ Result<ChosenPath> choose_path(const std::string& requested, const std::string& 
     return chosen;
 }
 
-void sit(const config::Settings& settings, Path& path) {
+void apply_seat(const config::Settings& settings, Path& path) {
     const auto seat = config::seat_of(settings);
     if (!seat) return;
     for (PathSample& sample : path.samples) sample.pose.fov_y_rad = seat->fov_y_rad;

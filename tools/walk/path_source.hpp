@@ -32,6 +32,6 @@ Pose random_pose(const Path& path, Random& random);
 Path generated_tour(const model::Model& model);
 
 /// Gives all poses the seat's field of view, if there is a seat. Start, viewpoints, tour and steered poses are of the path.
-void sit(const config::Settings& settings, Path& path);
+void apply_seat(const config::Settings& settings, Path& path);
 
 }  // namespace surefoot::walk

@@ -54,6 +54,9 @@ Result<void> check_real_time(const WalkRequest& r) {
 
 /// A window's keyboard needs a window; and what fills the screen too.
 Result<void> check_window(const WalkRequest& r, gl::BackendKind backend) {
+    if (r.input_file == window_input && !r.may_steer)
+        return Error{fmt::format("--input {}", window_input), "Only `surefoot walk` and the service are steered by a window",
+                     "Remove it", ErrorKind::misuse};
     if (backend == gl::BackendKind::window) return {};
     const std::string remedy = fmt::format("Add --backend {}", gl::window_backend);
     if (r.input_file == window_input)
@@ -112,6 +115,7 @@ Result<void> check_request(const WalkRequest& r) {
 bool window_steers(const WalkRequest& r) {
     const auto backend = gl::backend_named(r.backend);
     if (!backend || (*backend)->kind != gl::BackendKind::window || r.clock != rt::ClockKind::real || r.control) return false;
+    if (!r.may_steer) return false;
     return r.input_file.empty() || r.input_file == window_input || r.input_file == live_input;
 }
 

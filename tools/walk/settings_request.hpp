@@ -18,8 +18,8 @@ void apply_settings(const config::Configuration& configuration, WalkRequest& req
 /// are options of the command line.
 Result<void> check_request(const WalkRequest& request);
 
-/// Whether keyboard and mouse of a window steer, alone or beside devices. Without an input the path is followed until they do.
-/// Not on the virtual clock, nor with a control.
+/// Whether keyboard and mouse of a window steer where the request lets them, alone or beside devices. Without an input the path
+/// is followed until they do. Not on the virtual clock, nor with a control.
 bool window_steers(const WalkRequest& request);
 /// Whether somebody steers by hand: not a path, nor a recording.
 inline bool is_steered_live(const WalkRequest& request) { return request.input_file == live_input || window_steers(request); }

@@ -7,8 +7,8 @@
 namespace surefoot::walk {
 
 SteeredPoses::SteeredPoses(rt::TripleBuffer<SteeredSample>& samples, const input::MotionLimits& limits, std::int64_t period_ns,
-                           InputStepper* inline_stepper)
-    : samples_(samples), limits_(limits), period_ns_(period_ns), inline_stepper_(inline_stepper) {}
+                           InputStepper* inline_stepper, PathPoses* path_poses)
+    : samples_(samples), limits_(limits), period_ns_(period_ns), inline_stepper_(inline_stepper), path_poses_(path_poses) {}
 
 FramePose SteeredPoses::sample(const FrameTime& time) {
     if (inline_stepper_ != nullptr) inline_stepper_->advance_to(time.now_ns);
@@ -28,6 +28,12 @@ bool SteeredPoses::latch(const FrameTime& time, FramePose& newest) {
 FramePose SteeredPoses::pose_of(const FrameTime& time) const {
     const SteeredSample& s = samples_.front();
     FramePose out;
+    if (s.on_schedule && path_poses_ != nullptr) {
+        out = path_poses_->sample(time);
+        out.stamp_ns = s.nav.stamp_ns;
+        out.reports = s.reports;
+        return out;
+    }
     const std::int64_t by_ns = std::clamp(time.due_ns - s.time_ns, -carry_limit_ns, carry_limit_ns);
     const auto carried_by = [&](std::int64_t ns) {
         return ns == 0 ? s.nav.pose : input::carried(s.nav, static_cast<double>(ns) * 1e-9);

@@ -21,9 +21,10 @@ inline double region_ahead_s(std::int64_t period_ns) {
 /// A walker's region is clipped by walls: it is around where walls let the eye come to, and no larger than to the nearest wall.
 class SteeredPoses final : public PoseSource {
 public:
-    /// `inline_stepper`: on the virtual clock, stepped here up to the frame's time; null: a thread of its own steps it.
+    /// `path_poses`: in place of samples while nobody has left the path; must outlive this. `inline_stepper`: on the virtual
+    /// clock, stepped here up to the frame's time; null: a thread of its own steps it.
     SteeredPoses(rt::TripleBuffer<SteeredSample>& samples, const input::MotionLimits& limits, std::int64_t period_ns,
-                 InputStepper* inline_stepper);
+                 InputStepper* inline_stepper, PathPoses* path_poses = nullptr);
 
     FramePose sample(const FrameTime& time) override;
     bool latch(const FrameTime& time, FramePose& newest) override;
@@ -35,6 +36,7 @@ private:
     input::MotionLimits limits_;
     std::int64_t period_ns_;
     InputStepper* inline_stepper_;
+    PathPoses* path_poses_;
     std::uint32_t jumps_seen_ = 0;
 };
 

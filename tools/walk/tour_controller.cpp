@@ -62,9 +62,10 @@ void TourController::press_buttons(input::NavigationSample& sample, input::Steer
     }
 }
 
-void TourController::tour(input::NavigationSample& sample, input::Steering& steering, double dt_s) {
+void TourController::tour(input::NavigationSample& sample, input::Steering& steering, double to_s) {
     const Pose before = pose_at(path_, tour_s_);
-    tour_s_ += dt_s;
+    const double dt_s = to_s - tour_s_;
+    tour_s_ = to_s;
     const Pose pose = pose_at(path_, tour_s_);
     put(pose, sample, steering);
     if (dt_s <= 0) return;
@@ -83,10 +84,11 @@ void TourController::follow(input::NavigationSample& sample, input::Steering& st
         hand_rested_ = hand_rested_ || !hand;
     }
     press_buttons(sample, steering);
+    if (paused_ || !touring_) start_ns_ = -1;
     if (paused_)
         put(last_, sample, steering);
     else if (touring_)
-        tour(sample, steering, dt_s);
+        tour(sample, steering, on_schedule() ? std::max(0.0, static_cast<double>(now_ns - start_ns_) * 1e-9) : tour_s_ + dt_s);
     last_ = sample.pose;
 }
 

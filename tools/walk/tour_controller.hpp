@@ -27,12 +27,14 @@ public:
     /// Tours from the start, from `start_ns` on, until the hand moves. Before the first step.
     void begin_tour(std::int64_t start_ns) {
         touring_ = true;
-        last_ns_ = start_ns;
+        last_ns_ = start_ns_ = start_ns;
     }
     /// Call it after every tick of `steering`, on its thread. Moves the eye where a button demands it, and puts the result into
     /// `sample` for the frame thread. Edges are taken from the tick, so none is lost and none is taken twice.
     void follow(input::NavigationSample& sample, input::Steering& steering, std::int64_t now_ns) REQUIRES(steering.steers);
 
+    /// Still on the tour that began with the walk: the pose is the path's at the walk's time.
+    [[nodiscard]] bool on_schedule() const { return start_ns_ >= 0; }
     [[nodiscard]] bool touring() const { return touring_; }
     [[nodiscard]] bool paused() const { return paused_; }
     /// How often the eye was put elsewhere without walking there.
@@ -41,7 +43,7 @@ public:
 private:
     void press_buttons(input::NavigationSample& sample, input::Steering& steering) REQUIRES(steering.steers);
     void put(const Pose& pose, input::NavigationSample& sample, input::Steering& steering) REQUIRES(steering.steers);
-    void tour(input::NavigationSample& sample, input::Steering& steering, double dt_s) REQUIRES(steering.steers);
+    void tour(input::NavigationSample& sample, input::Steering& steering, double to_s) REQUIRES(steering.steers);
 
     const Path& path_;
     std::vector<Pose> viewpoints_;
@@ -51,6 +53,7 @@ private:
     bool hand_rested_ = false;  ///< since the tour began: a hand that held on while it was pressed does not end it
     std::uint32_t jumps_ = 0;
     std::int64_t last_ns_ = -1;
+    std::int64_t start_ns_ = -1;  ///< of the tour that began with the walk; -1: there is none, or it was left
     Pose last_;
 };
 

@@ -90,7 +90,7 @@ rt::FrameLoopOptions loop_options(Session& s, const Progress& progress) {
     o.failed = &s.lost;
     if (s.window) o.left = &s.window->left();
     if (s.may_be_prolonged) o.prolonged = &s.prolonged;
-    o.prolonged_frames = max_frames;
+    o.prolonged_frames = s.request.max_kept_frames;
     o.continued = s.virtual_clock ? nullptr : rt::count_continues();
     o.rasterisers = s.rasterisers;
     o.rasterisers_on_core = s.on_frame_core;
@@ -135,7 +135,7 @@ void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, cons
         if (s.input) s.input->poll(progress, s.notes);
         notify_screen(s, progress);
         notify_input(s);
-        if (s.may_be_prolonged && s.input->steered()) s.prolonged.store(true, std::memory_order_relaxed);
+        if (s.may_be_prolonged && s.input->used()) s.prolonged.store(true, std::memory_order_relaxed);
         notify_missed_frame(s);
         if (s.steal && rt::monotonic_ns() - steal_read_ns >= steal_every_ns) {
             steal_read_ns = rt::monotonic_ns();
@@ -168,7 +168,9 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     const rt::FrameLoopOptions options = loop_options(s, progress);
 
     PathPoses path_poses(s.path.path, s.grid.period_ns, s.engine->options().device.viewport);
-    if (s.input) s.input->begin(s.path.path, s.engine->model().ground, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
+    if (s.input)
+        s.input->begin(s.path.path, s.engine->model().ground, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan),
+                       &path_poses);
     std::unique_ptr<PrepareThread> preparing;
     JumpBuffer* jump_poses = s.input ? s.input->jump_poses() : nullptr;
     RegionClip* clip = s.input ? s.input->clip() : nullptr;
@@ -233,6 +235,20 @@ void record_loss(const Session& s, WalkOutcome& outcome) {
                                      "Start again, and see the kernel's log for resets of the GPU", ErrorKind::no_device});
 }
 
+void end_window(Session& s, WalkOutcome& outcome) {
+    if (!s.window) return;
+    s.window->stop();
+    outcome.left = s.window->left().load();
+    if (std::string refused = s.window->refused(); !refused.empty()) outcome.notes.push_back(std::move(refused));
+}
+
+/// A walk that a visitor prolongs has no length that he gave, so its end must be explained.
+void add_length_message(const Session& s, std::uint64_t seen, WalkOutcome& outcome) {
+    if (!s.prolonged.load() || seen + s.facts.dropped_records < s.request.max_kept_frames) return;
+    outcome.notes.push_back(fmt::format(
+        "The walk ended after {} frames: no more are kept. Start it again, or let surefootd run it, which keeps none.", seen));
+}
+
 }  // namespace
 
 Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress, const WalkObserver& observer) {
@@ -283,9 +299,9 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     s.facts.dropped_records = ring.dropped();
     outcome.records = recorder.take_records();
     record_loss(s, outcome);
-    if (s.window) s.window->stop();
-    outcome.left = s.window && s.window->left().load();
+    end_window(s, outcome);
     outcome.stopped = progress.stopped() && !outcome.left && (request.endless || s.prolonged.load() || seen < s.frames);
+    add_length_message(s, seen, outcome);
     if (s.input) outcome.summary.input = s.input->summary(outcome.records);
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
     if (s.window) outcome.summary.display = s.window->displayed();

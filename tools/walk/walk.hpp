@@ -41,12 +41,15 @@ constexpr std::string_view window_input = gl::window_backend;
 struct WalkRequest : config::Settings {
     WalkRequest();            ///< the schema's defaults
     std::string config_file;  ///< where settings came from: not to be written over; may be empty
-    bool may_leave = true;    ///< Escape in a window, and closing it, end the walk
+    bool may_leave = false;   ///< Escape in a window, and closing it, end the walk
+    bool may_steer = false;   ///< keyboard and mouse of a window steer
     bool clear_stop = false;  ///< live: release a stop that an earlier walk left latched
     /// 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long. A visitor who steers by a
     /// window walks on until he leaves.
     std::uint64_t frames = 0;
     double seconds = 0;
+    /// Of a walk that keeps records, 0.4 KiB each. A longer one is refused; one that a visitor prolongs ends there.
+    std::uint64_t max_kept_frames = 4'000'000;
     bool keep_records = true;  ///< false: records go only to the observer, and no outputs are made of them
     bool endless = false;      ///< until progress.stop: records go only to the observer and are not kept, so there are no outputs
     double cost_noise = 0;     ///< relative, seeded (virtual clock)

@@ -183,7 +183,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
         if (!path) return path.error();
         s.path = std::move(*path);
     }
-    sit(r, s.path.path);
+    apply_seat(r, s.path.path);
 
     if (s.input && r.walking != rt::WalkingMode::fly) {
         if (model->ground.empty())
@@ -238,13 +238,13 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
     const double frames = s.request.control      ? static_cast<double>(s.control.slots())
                           : s.request.frames > 0 ? static_cast<double>(s.request.frames)
                                                  : std::max(1.0, std::round(seconds / period_s));
-    if (s.request.keep_records && !(frames <= static_cast<double>(max_frames))) {
+    if (s.request.keep_records && !(frames <= static_cast<double>(s.request.max_kept_frames))) {
         const bool limited = s.request.frames > 0 || s.request.seconds > 0 || s.request.control;
         return Error{limited    ? "walk"
                      : recorded ? s.request.input_file
                                 : s.path.source,
                      fmt::format("The walk takes {:.4g} frames, and at most {} are kept ({:.0f} hours at this rate)", frames,
-                                 max_frames, static_cast<double>(max_frames) * period_s / 3600.0),
+                                 s.request.max_kept_frames, static_cast<double>(s.request.max_kept_frames) * period_s / 3600.0),
                      "Give a smaller --frames or --seconds", ErrorKind::out_of_limits};
     }
     if (!s.request.capture_file.empty() && static_cast<double>(s.request.capture_frame) >= frames) {
@@ -304,7 +304,8 @@ Result<void> open_session(Session& s, const Progress& progress) {
 void open_window_thread(Session& s) {
     auto window = s.engine->device().window();
     if (!window) return;
-    const WindowThreadOptions options{s.input ? s.input->window_feed() : nullptr, s.request.may_leave};
+    const WindowThreadOptions options{s.input ? s.input->window_feed() : nullptr, s.request.may_leave,
+                                      s.input ? s.input->window_stop_keys() : 0};
     rt::Placement placement = window_placement(s.plan);
     if (s.virtual_clock) placement = {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = placement.name};
     s.window = std::make_unique<WindowThread>(std::move(window), options, placement);

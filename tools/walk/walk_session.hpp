@@ -32,8 +32,6 @@ namespace surefoot::walk {
 /// for overheads that the table cannot know.
 model::CostModel with_overhead(model::CostModel costs, double factor);
 
-constexpr std::uint64_t max_frames = 4'000'000;  ///< of a walk that keeps records: 0.4 KiB each
-
 /// What the parts of a session share while it runs.
 struct Session {
     rt::TripleBuffer<PoseSample> poses;  ///< both stand on cache lines of their own
@@ -51,7 +49,7 @@ struct Session {
     std::optional<rt::DisplayClock> display;  ///< where a display tells when it shows pictures
     std::uint64_t frames = 0;                 ///< 0: until stopped
     bool may_be_prolonged = false;            ///< beyond `frames`, until the visitor leaves
-    std::atomic<bool> prolonged{false};       ///< somebody steers by the window: `frames` is no end any more
+    std::atomic<bool> prolonged{false};       ///< somebody uses the window: `frames` is no end any more
     std::unique_ptr<WindowThread> window;     ///< null without a window
     std::vector<pid_t> rasterisers;
     std::vector<pid_t> on_frame_core;        ///< those of them that share the frame thread's core

@@ -1,6 +1,7 @@
 // The loop of the window's thread.
 #include "tools/walk/window_thread.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -23,6 +24,7 @@ WindowThread::WindowThread(std::shared_ptr<gl::WindowEvents> window, WindowThrea
     : window_(std::move(window)),
       options_(std::move(options)),
       placement_(std::move(placement)),
+      refused_before_(gl::x11::refusals().count),
       wake_fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
     if (window_->present_times() != nullptr) shown_ms_.reserve(max_shown);
     thread_ = std::thread([this] { run(); });
@@ -45,7 +47,8 @@ void WindowThread::run() {
     if (auto placed = rt::place_thread(0, placement_); !placed) misplaced_ = placed.error();
     placed_.count_down();
     const gl::WindowSize size = window_->size();
-    input::WindowReports reports(static_cast<std::int32_t>(size.width), static_cast<std::int32_t>(size.height));
+    input::WindowReports reports(static_cast<std::int32_t>(size.width), static_cast<std::int32_t>(size.height),
+                                 options_.stop_keys);
     while (!stopping_.load(std::memory_order_relaxed)) {
         take_events(reports);
         take_shown();
@@ -81,6 +84,12 @@ report::DisplaySummary WindowThread::displayed() const {
     return summary;
 }
 
+std::string WindowThread::refused() const {
+    const gl::x11::Refusals now = gl::x11::refusals();
+    if (now.count == refused_before_) return {};
+    return fmt::format("The X server refused requests of the window: {}. The last: {}.", now.count - refused_before_, now.text());
+}
+
 void WindowThread::take_events(input::WindowReports& reports) {
     for (WindowEvent event; window_->next(event);) {
         const input::WindowReports::Step step = reports.take(event);
@@ -108,7 +117,8 @@ void WindowThread::obey(input::WindowCommand command, input::WindowReports& repo
         case Command::centre:
             return window_->centre_pointer();
         case Command::fullscreen:
-            return window_->toggle_fullscreen();
+            if (options_.feed || options_.may_leave) window_->toggle_fullscreen();
+            return;
     }
 }
 

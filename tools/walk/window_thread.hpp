@@ -1,11 +1,13 @@
 // The thread that reads a window's events: hands its keys and pointer to the input thread, and does what the visitor orders of
-// the window. Nobody waits for it, and it waits for the X server alone.
+// the window. No thread waits for this one. It waits only for the X server.
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <latch>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -20,7 +22,8 @@ namespace surefoot::walk {
 /// Settings of the thread.
 struct WindowThreadOptions {
     std::shared_ptr<input::WindowFeed> feed;  ///< null: keys and pointer do not steer
-    bool may_leave = true;                    ///< false: neither Escape nor closing ends the walk
+    bool may_leave = false;                   ///< Escape and closing end the walk; without it and a feed F11 does nothing too
+    std::uint64_t stop_keys = 0;              ///< see input::WindowReports
 };
 
 /// Runs from the constructor to stop().
@@ -37,6 +40,8 @@ public:
     [[nodiscard]] report::DisplaySummary displayed() const;
     /// Set once the visitor has closed the window or pressed Escape. For any thread.
     [[nodiscard]] const std::atomic<bool>& left() const { return left_; }
+    /// After stop(): what the X server refused meanwhile, a sentence; empty: nothing.
+    [[nodiscard]] std::string refused() const;
     /// The error if it could not be placed.
     [[nodiscard]] const std::optional<Error>& misplaced() const { return misplaced_; }
 
@@ -50,6 +55,7 @@ private:
     WindowThreadOptions options_;
     rt::Placement placement_;
     std::optional<Error> misplaced_;  ///< written before placed_
+    std::uint32_t refused_before_;    ///< requests of this process, before the thread began
     std::latch placed_{1};
     std::atomic<bool> left_{false}, stopping_{false};
     int wake_fd_;
