@@ -53,11 +53,11 @@ rt::Shown KmsScreen::set_mode(ShownBuffer buffer) {
 }
 
 rt::Shown KmsScreen::flip(ShownBuffer buffer) {
-    const std::int64_t wait_ns = std::max(3 * refresh_ns_, min_flip_wait_ns);
-    if (std::exchange(in_flight_, false) && !port_.wait_flip(wait_ns).done) return fail(ETIME);
+    const std::int64_t longest_wait_ns = std::max(3 * refresh_ns_, min_flip_wait_ns);
+    if (std::exchange(in_flight_, false) && !port_.wait_flip(longest_wait_ns).done) return fail(ETIME);
     int error = port_.flip(buffer);
     if (error == EBUSY) {  // the flip before has not been shown yet
-        (void)port_.wait_flip(wait_ns);
+        (void)port_.wait_flip(longest_wait_ns);
         error = port_.flip(buffer);
     }
     if (error == EBUSY) error = ETIME;  // not another program: that is EACCES here
@@ -67,7 +67,7 @@ rt::Shown KmsScreen::flip(ShownBuffer buffer) {
         return {rt::ShownBy::hand_over, 0, 0};
     }
     const std::int64_t queued_ns = now_ns_();
-    const Flip shown = port_.wait_flip(wait_ns);
+    const Flip shown = port_.wait_flip(longest_wait_ns);
     if (!shown.done) return fail(ETIME);
     if (!port_.counts_refreshes()) return {rt::ShownBy::hand_over, 0, 0};
     return {rt::ShownBy::display, shown.time_ns, queued_ns};

@@ -89,6 +89,11 @@ public:
     [[nodiscard]] int columns() const { return columns_; }
     [[nodiscard]] int rows() const { return rows_; }
     [[nodiscard]] const std::vector<double>& at(int column, int row) const { return floors_[number(column, row)]; }
+    /// Whether another floor lies so close above that nobody stands on this one.
+    [[nodiscard]] bool covered(int column, int row, double y) const {
+        const auto& floors = at(column, row);
+        return std::any_of(floors.begin(), floors.end(), [&](double next) { return next > y && next <= y + max_rise_m; });
+    }
     /// Whether a step up from there leads to one of the eight lines around.
     [[nodiscard]] bool rises(int column, int row, double y) const {
         for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r)
@@ -113,7 +118,7 @@ inline std::vector<Flight> find_flights(const exact::ExactGround& judge, const B
     for (int row = 0; row < lattice.rows(); ++row)
         for (int column = 0; column < lattice.columns(); ++column)
             for (const double y : lattice.at(column, row)) {
-                if (!lattice.rises(column, row, y)) continue;
+                if (lattice.covered(column, row, y) || !lattice.rises(column, row, y)) continue;
                 for (int k = 0; k < 16; ++k) {
                     const double angle = k * 0.392699081698724;
                     Flight flight = flight_from(judge, {box.min.x + column * seed_m, y, box.min.z + row * seed_m},
