@@ -265,7 +265,7 @@ rt::Cause cause_of_theft(rt::FrameRecord r, bool by_cores) {
     r.own_miss = rt::is_own_miss(r, limits);
     if (!by_cores) return r.cause;
     const std::array<double, 1> before = {0}, after = {static_cast<double>(r.core_steal_ns) * 1e-6};
-    rt::StealEvidence evidence(rt::CpuMask{0});
+    rt::StealEvidence evidence(0, rt::CpuMask{0});
     evidence.read(r.due_ns, before);
     evidence.read(r.complete_ns, after);
     evidence.judge({&r, 1});
