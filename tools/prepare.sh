@@ -7,7 +7,7 @@ build_packages=(
   libgl1-mesa-dri libdrm-dev libgbm-dev libhidapi-dev libudev-dev git
 )
 # Opened at run time, or used by single tests only: their absence is told, and is no failure.
-optional_packages=(libosmesa6 libgpiod-dev)
+optional_packages=(libosmesa6 libgpiod-dev xvfb libxtst6 libxcb-present0)
 
 print_title() { printf '\n\033[1m%s\033[0m\n' "$*" | if [[ -t 1 ]]; then cat; else sed 's/\x1b\[[0-9;]*m//g'; fi; }
 fail() { printf 'surefoot: %s\n' "$*" >&2; exit 1; }

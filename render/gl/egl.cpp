@@ -82,6 +82,20 @@ void EglContext::destroy() {
     surface_ = EGL_NO_SURFACE;
 }
 
+bool EglContext::window_config(unsigned long visual, EGLConfig& config) const {
+    const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    std::array<EGLConfig, 128> configs{};
+    EGLint count = 0;
+    egl_.ChooseConfig(display_, wanted.data(), configs.data(), static_cast<EGLint>(configs.size()), &count);
+    for (EGLint i = 0; i < count; ++i) {
+        EGLint native = 0;
+        config = configs[static_cast<std::size_t>(i)];
+        egl_.GetConfigAttrib(display_, config, EGL_NATIVE_VISUAL_ID, &native);
+        if (static_cast<std::uint32_t>(native) == visual) return true;
+    }
+    return false;
+}
+
 void EglContext::create_of_version(EGLConfig config, EGLint minor, bool reports_resets) {
     const std::array<EGLint, 9> wanted{EGL_CONTEXT_MAJOR_VERSION,
                                        4,

@@ -59,6 +59,8 @@ public:
     EglContext(const EglContext&) = delete;
     EglContext& operator=(const EglContext&) = delete;
 
+    /// The configuration whose windows have this native visual; false where there is none.
+    [[nodiscard]] bool window_config(unsigned long visual, EGLConfig& config) const;
     /// Core context, 4.5 down to 4.3, made current; surfaceless unless `surface` was set before.
     Result<void> create(EGLConfig config);
     bool make_current() override;

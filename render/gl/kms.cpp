@@ -1,7 +1,6 @@
 // The kms back end: EGL on the card's own buffers (GBM), or plain buffers that the processor fills.
 #include <drm_fourcc.h>
 #include <sys/mman.h>
-#include <time.h>
 
 #include <array>
 #include <cerrno>
@@ -22,12 +21,6 @@
 namespace surefoot::gl {
 
 namespace {
-
-std::int64_t monotonic_ns() {
-    timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 /// A card that drives its screen. Buffers are freed before it.
 struct OpenScreen {
@@ -61,7 +54,7 @@ public:
         const Error none{name(), "The card's driver makes no buffers to draw into: " + egl_.error_text(),
                          "Install libegl-mesa0 and libgl1-mesa-dri", ErrorKind::unsupported};
         EGLConfig config = nullptr;
-        if (!matching_config(config)) return none;
+        if (!window_config(GBM_FORMAT_XRGB8888, config)) return none;
         gbm_surface_ = gbm_.CreateSurface(device_, screen_->surface.width, screen_->surface.height, GBM_FORMAT_XRGB8888,
                                           GBM_BO_USE_SCANOUT | GBM_BO_USE_RENDERING);
         if (gbm_surface_ == nullptr) return none;
@@ -114,19 +107,6 @@ private:
             return known.buffer;
         }
         return 0;
-    }
-    bool matching_config(EGLConfig& config) const {
-        const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-        std::array<EGLConfig, 128> configs{};
-        EGLint count = 0;
-        egl_.ChooseConfig(display_, wanted.data(), configs.data(), static_cast<EGLint>(configs.size()), &count);
-        for (EGLint i = 0; i < count; ++i) {
-            EGLint format = 0;
-            config = configs[static_cast<std::size_t>(i)];
-            egl_.GetConfigAttrib(display_, config, EGL_NATIVE_VISUAL_ID, &format);
-            if (static_cast<std::uint32_t>(format) == GBM_FORMAT_XRGB8888) return true;
-        }
-        return false;
     }
 
     Gbm gbm_;
@@ -246,7 +226,7 @@ Result<std::unique_ptr<OpenScreen>> try_screen(const Drm& drm, const ScreenOptio
                      "End that program, or run it on another card", ErrorKind::no_device};
     }
     open->console.emplace(options.keyboard_off);
-    open->screen = std::make_unique<KmsScreen>(*open->card, open->name, mode->refresh_ns, monotonic_ns);
+    open->screen = std::make_unique<KmsScreen>(*open->card, open->name, mode->refresh_ns, card_now_ns);
     return open;
 }
 

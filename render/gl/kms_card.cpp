@@ -28,7 +28,7 @@ constexpr auto plane_type = DRM_MODE_OBJECT_PLANE;
 /// The connector's mode as the kernel has it; false where it has no such mode.
 bool timings_of(const drmModeConnector& connector, const ScreenMode& mode, drmModeModeInfo& out) {
     for (int i = 0; i < connector.count_modes; ++i) {
-        const ScreenMode one = mode_of(connector.modes[i], static_cast<std::uint32_t>(i));
+        const ScreenMode one = mode_of(connector.modes[i]);
         if (one.width != mode.width || one.height != mode.height || one.interlaced != mode.interlaced ||
             one.refresh_ns != mode.refresh_ns)  // 60 and 59.94 Hz are two modes
             continue;
@@ -36,12 +36,6 @@ bool timings_of(const drmModeConnector& connector, const ScreenMode& mode, drmMo
         return true;
     }
     return false;
-}
-
-std::int64_t card_now_ns() {
-    timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
 std::uint64_t turn_of(int rotation_deg) {
@@ -52,6 +46,12 @@ std::uint64_t turn_of(int rotation_deg) {
 }
 
 }  // namespace
+
+std::int64_t card_now_ns() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
 
 Result<std::unique_ptr<KmsCard>> KmsCard::open(const Drm& drm, const Screen& screen, const ScreenMode& mode, int rotation_deg) {
     auto card = std::unique_ptr<KmsCard>(new KmsCard(drm, screen, mode));
@@ -317,7 +317,7 @@ Flip KmsCard::wait_flip(std::int64_t timeout_ns) {
                 drm_event_vblank flip{};
                 std::memcpy(&flip, events.data() + at, sizeof flip);
                 if (flip.user_data == flips_)
-                    return {true, std::int64_t{flip.tv_sec} * 1'000'000'000 + std::int64_t{flip.tv_usec} * 1000, flip.sequence};
+                    return {true, std::int64_t{flip.tv_sec} * 1'000'000'000 + std::int64_t{flip.tv_usec} * 1000};
             }
             at += event.length;
         }

@@ -12,6 +12,9 @@
 
 namespace surefoot::gl {
 
+/// CLOCK_MONOTONIC, which stamps flips.
+std::int64_t card_now_ns();
+
 /// Owns the card's file. Its ScreenPort drives one connector; pictures are XRGB8888.
 class KmsCard final : public ScreenPort {
 public:

@@ -52,8 +52,7 @@ void add_screens(const Drm& drm, int file, const std::string& card, std::vector<
             fmt::format("{}-{}", known ? connector_names[connector->connector_type] : "Unknown", connector->connector_type_id);
         screen.connector = connector->connector_id;
         screen.connected = connector->connection == DRM_MODE_CONNECTED && connector->count_modes > 0;
-        for (int m = 0; m < connector->count_modes; ++m)
-            screen.modes.push_back(mode_of(connector->modes[m], static_cast<std::uint32_t>(m)));
+        for (int m = 0; m < connector->count_modes; ++m) screen.modes.push_back(mode_of(connector->modes[m]));
         screen.counts_refreshes = counts_refreshes(drm, file, *connector);
         drm.FreeConnector(connector);
         screens.push_back(std::move(screen));
@@ -86,13 +85,12 @@ bool has_open(const fs::path& process, const std::string& card) {
 
 }  // namespace
 
-ScreenMode mode_of(const drmModeModeInfo& timings, std::uint32_t index) {
+ScreenMode mode_of(const drmModeModeInfo& timings) {
     ScreenMode mode;
     mode.width = timings.hdisplay;
     mode.height = timings.vdisplay;
     mode.preferred = (timings.type & DRM_MODE_TYPE_PREFERRED) != 0;
     mode.interlaced = (timings.flags & DRM_MODE_FLAG_INTERLACE) != 0;
-    mode.index = index;
     if (timings.clock > 0) {  // kHz
         double lines = timings.vtotal;
         if ((timings.flags & DRM_MODE_FLAG_DBLSCAN) != 0) lines *= 2;

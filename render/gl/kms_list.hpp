@@ -13,7 +13,7 @@ namespace surefoot::gl {
 /// find_screens(), by a library that is loaded.
 Result<std::vector<Screen>> list_screens(const Drm& drm);
 
-ScreenMode mode_of(const drmModeModeInfo& timings, std::uint32_t index);
+ScreenMode mode_of(const drmModeModeInfo& timings);
 
 /// Other programs that have the card open: "Xorg (412), surefootd (519)". Those of other users show only to root.
 std::string holders_of(const std::string& card);

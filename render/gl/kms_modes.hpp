@@ -18,7 +18,6 @@ struct ScreenMode {
     std::int64_t refresh_ns = 0;          ///< of its timings, exactly rounded
     bool preferred = false;               ///< by the screen
     bool interlaced = false;
-    std::uint32_t index = 0;  ///< in the connector's list
 };
 
 /// What a user requests.

@@ -118,7 +118,7 @@ std::vector<std::string> KmsScreen::watch() {
     return lines;
 }
 
-/// Flips go on as if nothing were, where a screen is unplugged. Plugged in again it is dark until its mode is set.
+/// Flips continue while the screen is unplugged. Once it is plugged in again, it is dark until its mode is set.
 void KmsScreen::watch_plug(std::vector<std::string>& lines) {
     const std::int64_t now = now_ns_();
     if (state() == ScreenState::gone || now - watched_ns_ < watch_every_ns) return;

@@ -16,9 +16,8 @@ using ShownBuffer = std::uint32_t;
 
 /// What the kernel says of a flip.
 struct Flip {
-    bool done = false;           ///< false: no word of it within the time
-    std::int64_t time_ns = 0;    ///< CLOCK_MONOTONIC
-    std::uint64_t sequence = 0;  ///< of the refresh; 0 where the card counts none
+    bool done = false;         ///< false: no event came within the time
+    std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC
 };
 
 /// What a screen is driven by: a card of the kernel, or a test's. Each int is an errno; 0: done.

@@ -44,7 +44,7 @@ public:
 
     Result<void> create_with_surface() {
         EGLConfig config = nullptr;
-        if (!matching_config(config)) {
+        if (!window_config(connection_->visual(), config)) {
             return Error{name(), "No EGL configuration fits the screen's visual", "Use a 24-bit screen, or --backend egl",
                          ErrorKind::unsupported};
         }
@@ -70,19 +70,6 @@ public:
     }
 
 private:
-    bool matching_config(EGLConfig& config) const {
-        const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-        std::array<EGLConfig, 128> configs{};
-        EGLint count = 0;
-        egl_.ChooseConfig(display_, wanted.data(), configs.data(), static_cast<EGLint>(configs.size()), &count);
-        for (EGLint i = 0; i < count; ++i) {
-            EGLint visual = 0;
-            config = configs[static_cast<std::size_t>(i)];
-            egl_.GetConfigAttrib(display_, config, EGL_NATIVE_VISUAL_ID, &visual);
-            if (static_cast<x11::Id>(visual) == connection_->visual()) return true;
-        }
-        return false;
-    }
     std::shared_ptr<WindowEvents> window_;
     std::unique_ptr<DrawingConnection> connection_;  // goes first
 };

@@ -43,7 +43,7 @@ struct TestCard final : ScreenPort {
             return {};
         }
         test_now_ns += 3 * ms;
-        return {true, test_now_ns - ms, 7};
+        return {true, test_now_ns - ms};
     }
     [[nodiscard]] bool counts_refreshes() const override { return counts; }
     bool connected(bool probe) override {
