@@ -28,24 +28,24 @@ struct Engine::Impl {
     std::unique_ptr<gl::Device> device;
     std::unique_ptr<prepare::Preparer> preparer;
     prepare::ResolutionChooser resolution;
-    bool full_depth_always = false;  ///< requested by the options, for every selector
     const select::Selector* selector = nullptr;
-    [[no_unique_address]] ThreadRole draws;  ///< the thread that called bind(); prepare() runs on another
-    bool by_budget = true;                   ///< the selector: others buy whatever is offered
-    FilterCosts filter_costs;
+    [[no_unique_address]] ThreadRole draws;                       ///< the thread that called bind(); prepare() runs on another
+    bool full_depth_always = false;                               ///< requested by the options, for every selector
+    bool by_budget = true;                                        ///< the selector: others buy whatever is offered
     rt::TextureFilter best_filter = rt::TextureFilter::bilinear;  ///< that frames may have
+    FilterCosts filter_costs;
     QualityDwell dwell GUARDED_BY(draws);
-    float filter_us GUARDED_BY(draws) = 0;    ///< that the second mip level was offered for; 0: it was not
-    bool filtered GUARDED_BY(draws) = false;  ///< the cut has it
+    float filter_us GUARDED_BY(draws) = 0;       ///< that the second mip level was offered for; 0: it was not
+    bool filtered GUARDED_BY(draws) = false;     ///< the cut has it
+    bool offers_used GUARDED_BY(draws) = false;  ///< by a selection: the next offer begins a new list
+    bool use_last GUARDED_BY(draws) = false;     ///< the last cut's forms: no prepared set may be used
     select::SelectState state GUARDED_BY(draws);
     select::Cut cut GUARDED_BY(draws);
     select::ItemList offered GUARDED_BY(draws);
-    bool offers_used GUARDED_BY(draws) = false;  ///< by a selection: the next offer begins a new list
     select::SlicePlan plan GUARDED_BY(draws);
     std::vector<gl::DrawItem> drawn GUARDED_BY(draws), culled GUARDED_BY(draws);
     FloorWatch floor GUARDED_BY(draws);
     Unprepared unprepared GUARDED_BY(draws);
-    bool use_last GUARDED_BY(draws) = false;  ///< the last cut's forms: no prepared set may be used
     const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
     Correction correction GUARDED_BY(draws);
     double headroom GUARDED_BY(draws) = 1;  ///< that the last select() spent

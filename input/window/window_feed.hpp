@@ -32,8 +32,8 @@ public:
     [[nodiscard]] pollfd polled() const { return {event_fd_, POLLIN, 0}; }
 
 private:
-    [[no_unique_address]] ThreadRole pushes_;
     rt::SpscRing<WindowReport> ring_{1024};
+    [[no_unique_address]] ThreadRole pushes_;
     std::array<WindowReport, 2> waiting_ GUARDED_BY(pushes_);  ///< the sum, then the newest keys
     std::size_t waits_ GUARDED_BY(pushes_) = 0;                ///< how many of them
     int event_fd_;                                             ///< -1: none could be had; then the taker's own rhythm serves

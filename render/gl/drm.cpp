@@ -16,10 +16,24 @@ Result<Drm> load_drm() {
     auto library = Library::open("libdrm.so.2", "libdrm2");
     if (!library) return library.error();
     Drm drm;
-    bool found = true;
-#define SUREFOOT_DRM_LOAD(name, function) found = library->get(drm.name, #function) && found;
-    SUREFOOT_DRM_FUNCTIONS(SUREFOOT_DRM_LOAD)
-#undef SUREFOOT_DRM_LOAD
+    const bool found =
+        library->get(drm.AtomicAddProperty, "drmModeAtomicAddProperty") && library->get(drm.AtomicAlloc, "drmModeAtomicAlloc") &&
+        library->get(drm.AtomicCommit, "drmModeAtomicCommit") && library->get(drm.AtomicFree, "drmModeAtomicFree") &&
+        library->get(drm.AddFB2, "drmModeAddFB2") && library->get(drm.CreatePropertyBlob, "drmModeCreatePropertyBlob") &&
+        library->get(drm.CrtcGetSequence, "drmCrtcGetSequence") &&
+        library->get(drm.DestroyPropertyBlob, "drmModeDestroyPropertyBlob") &&
+        library->get(drm.FreeConnector, "drmModeFreeConnector") && library->get(drm.FreeEncoder, "drmModeFreeEncoder") &&
+        library->get(drm.FreeObjectProperties, "drmModeFreeObjectProperties") &&
+        library->get(drm.FreePlane, "drmModeFreePlane") && library->get(drm.FreePlaneResources, "drmModeFreePlaneResources") &&
+        library->get(drm.FreeProperty, "drmModeFreeProperty") && library->get(drm.FreeResources, "drmModeFreeResources") &&
+        library->get(drm.GetConnector, "drmModeGetConnector") &&
+        library->get(drm.GetConnectorCurrent, "drmModeGetConnectorCurrent") &&
+        library->get(drm.GetEncoder, "drmModeGetEncoder") && library->get(drm.GetPlane, "drmModeGetPlane") &&
+        library->get(drm.GetPlaneResources, "drmModeGetPlaneResources") && library->get(drm.GetProperty, "drmModeGetProperty") &&
+        library->get(drm.GetResources, "drmModeGetResources") && library->get(drm.Ioctl, "drmIoctl") &&
+        library->get(drm.IsMaster, "drmIsMaster") && library->get(drm.ObjectGetProperties, "drmModeObjectGetProperties") &&
+        library->get(drm.RmFB, "drmModeRmFB") && library->get(drm.SetClientCap, "drmSetClientCap") &&
+        library->get(drm.SetMaster, "drmSetMaster");
     if (!found) return incomplete("libdrm.so.2", "libdrm2");
     return drm;
 }

@@ -9,42 +9,36 @@
 
 namespace surefoot::gl {
 
-// X(member, function of libdrm)
-#define SUREFOOT_DRM_FUNCTIONS(X)                        \
-    X(AtomicAddProperty, drmModeAtomicAddProperty)       \
-    X(AtomicAlloc, drmModeAtomicAlloc)                   \
-    X(AtomicCommit, drmModeAtomicCommit)                 \
-    X(AtomicFree, drmModeAtomicFree)                     \
-    X(AddFB2, drmModeAddFB2)                             \
-    X(CreatePropertyBlob, drmModeCreatePropertyBlob)     \
-    X(CrtcGetSequence, drmCrtcGetSequence)               \
-    X(DestroyPropertyBlob, drmModeDestroyPropertyBlob)   \
-    X(FreeConnector, drmModeFreeConnector)               \
-    X(FreeEncoder, drmModeFreeEncoder)                   \
-    X(FreeObjectProperties, drmModeFreeObjectProperties) \
-    X(FreePlane, drmModeFreePlane)                       \
-    X(FreePlaneResources, drmModeFreePlaneResources)     \
-    X(FreeProperty, drmModeFreeProperty)                 \
-    X(FreeResources, drmModeFreeResources)               \
-    X(GetConnector, drmModeGetConnector)                 \
-    X(GetConnectorCurrent, drmModeGetConnectorCurrent)   \
-    X(GetEncoder, drmModeGetEncoder)                     \
-    X(GetPlane, drmModeGetPlane)                         \
-    X(GetPlaneResources, drmModeGetPlaneResources)       \
-    X(GetProperty, drmModeGetProperty)                   \
-    X(GetResources, drmModeGetResources)                 \
-    X(Ioctl, drmIoctl)                                   \
-    X(IsMaster, drmIsMaster)                             \
-    X(ObjectGetProperties, drmModeObjectGetProperties)   \
-    X(RmFB, drmModeRmFB)                                 \
-    X(SetClientCap, drmSetClientCap)                     \
-    X(SetMaster, drmSetMaster)
-
 /// Pointers to the functions of libdrm.
 struct Drm {
-#define SUREFOOT_DRM_MEMBER(name, function) decltype(&function) name = nullptr;
-    SUREFOOT_DRM_FUNCTIONS(SUREFOOT_DRM_MEMBER)
-#undef SUREFOOT_DRM_MEMBER
+    decltype(&drmModeAtomicAddProperty) AtomicAddProperty = nullptr;
+    decltype(&drmModeAtomicAlloc) AtomicAlloc = nullptr;
+    decltype(&drmModeAtomicCommit) AtomicCommit = nullptr;
+    decltype(&drmModeAtomicFree) AtomicFree = nullptr;
+    decltype(&drmModeAddFB2) AddFB2 = nullptr;
+    decltype(&drmModeCreatePropertyBlob) CreatePropertyBlob = nullptr;
+    decltype(&drmCrtcGetSequence) CrtcGetSequence = nullptr;
+    decltype(&drmModeDestroyPropertyBlob) DestroyPropertyBlob = nullptr;
+    decltype(&drmModeFreeConnector) FreeConnector = nullptr;
+    decltype(&drmModeFreeEncoder) FreeEncoder = nullptr;
+    decltype(&drmModeFreeObjectProperties) FreeObjectProperties = nullptr;
+    decltype(&drmModeFreePlane) FreePlane = nullptr;
+    decltype(&drmModeFreePlaneResources) FreePlaneResources = nullptr;
+    decltype(&drmModeFreeProperty) FreeProperty = nullptr;
+    decltype(&drmModeFreeResources) FreeResources = nullptr;
+    decltype(&drmModeGetConnector) GetConnector = nullptr;
+    decltype(&drmModeGetConnectorCurrent) GetConnectorCurrent = nullptr;
+    decltype(&drmModeGetEncoder) GetEncoder = nullptr;
+    decltype(&drmModeGetPlane) GetPlane = nullptr;
+    decltype(&drmModeGetPlaneResources) GetPlaneResources = nullptr;
+    decltype(&drmModeGetProperty) GetProperty = nullptr;
+    decltype(&drmModeGetResources) GetResources = nullptr;
+    decltype(&drmIoctl) Ioctl = nullptr;
+    decltype(&drmIsMaster) IsMaster = nullptr;
+    decltype(&drmModeObjectGetProperties) ObjectGetProperties = nullptr;
+    decltype(&drmModeRmFB) RmFB = nullptr;
+    decltype(&drmSetClientCap) SetClientCap = nullptr;
+    decltype(&drmSetMaster) SetMaster = nullptr;
 };
 
 /// Pointers to the functions of libgbm.

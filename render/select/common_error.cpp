@@ -105,7 +105,7 @@ bool CommonErrorCuts::find_within_budget(float min_error_rad) {
         return true;
     };
     const float start = std::max(likely_error(), min_error_rad);
-    float fine = start, coarse = start, step = keeps ? shown_error_factor : first_step;
+    float fine = 0, coarse = start, step = keeps ? shown_error_factor : first_step;
     if (fits(start, 1.0)) {
         do {
             if (coarse <= min_error_rad) return true;

@@ -77,11 +77,11 @@ private:
     void take_walk() REQUIRES(monitor_thread_) EXCLUDES(facts_mutex_);
     const MonitorPage& fill_page(bool with_threads) EXCLUDES(facts_mutex_);
 
+    rt::Telemetry telemetry_;  ///< the monitor thread's, and (the published copy) the readers'
     MonitorOptions options_;
-    [[no_unique_address]] ThreadRole monitor_thread_;
-    // The monitor thread's, and (the published copy) the readers'.
-    rt::Telemetry telemetry_;
+    // The monitor thread's.
     rt::IncidentRecorder incident_recorder_;
+    [[no_unique_address]] ThreadRole monitor_thread_;
     std::atomic<bool> walk_waits_{false};                       ///< setup_ is to be taken before the next record
     std::atomic<std::int64_t> cpu_ns_{0};                       ///< of all walks' monitor threads
     std::int64_t cpu_read_ns_ GUARDED_BY(monitor_thread_) = 0;  ///< record time
