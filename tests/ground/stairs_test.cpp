@@ -124,12 +124,4 @@ TEST(Nightly, StairsOfTheHospitalAreClimbedAsFarAsABodyFits) {
     EXPECT_GE(climb_all(*of, "hospital").found, 4U) << "slabs close them above";
 }
 
-TEST(Nightly, StairsOfRavenbridgeAreClimbedAndDescended) {
-    const auto of = imported("interior/ravenbridge-mansion/ravenbridge_mansion.glb");
-    if (!of) GTEST_SKIP() << "SUREFOOT_DATA is not set, or lacks ravenbridge";
-    const Flights flights = climb_all(*of, "ravenbridge");
-    EXPECT_GE(flights.found, 1U);
-    EXPECT_GT(flights.open, 0U);
-}
-
 }  // namespace surefoot::test
