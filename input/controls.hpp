@@ -52,6 +52,7 @@ struct MotionRequest {
     double forward = 0, side = 0, up = 0;
     double turn = 0, look = 0;  ///< turn > 0: to the left (counter-clockwise from above); look > 0: upwards
     double speed = 0;           ///< -1..1: from the slowest to the fastest factor; 0 leaves it
+    double zoom = 0;            ///< -1..1: how fast the field of view becomes narrower; below 0: wider again
     bool next_viewpoint = false, reset = false, tour = false, pause = false;  ///< edges: true in the sample they happen in
     double turn_by_rad = 0, look_by_rad = 0;  ///< by a pointer: an angle, not a rate; in the sample it happens in, as edges
 };
@@ -77,6 +78,7 @@ struct NavigationSample {
     Pose pose;                 ///< integrated so far, double; see geometry.hpp for the frame
     dvec3 velocity_m_s{0.0};   ///< world
     dvec3 angular_rad_s{0.0};  ///< world, axis times rate
+    double zoom_rate = 0;      ///< of the magnification's natural logarithm, 1/s
     double uncertainty_m = 0;  ///< of the pose one frame ahead; prepare/ widens its region by it
     double uncertainty_rad = 0;
     std::int64_t stamp_ns = 0;   ///< of the newest report in it

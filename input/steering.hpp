@@ -43,7 +43,7 @@ public:
 
     NavigationSample tick(const Lines& lines, std::int64_t now_ns, const Ground& ground = {}) REQUIRES(steers);
 
-    bool place(const Pose& pose) REQUIRES(steers) { return surefoot::input::place(motion_, pose); }
+    bool place(const Pose& pose, bool zooms = false) REQUIRES(steers) { return surefoot::input::place(motion_, pose, zooms); }
     /// Whether the device that moved the eye last moves it freely in space (DeviceMapping::flies).
     [[nodiscard]] bool flies() const REQUIRES(steers) { return flies_; }
     [[nodiscard]] const SafetyState& safety() const REQUIRES(steers) { return safety_; }

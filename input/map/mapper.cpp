@@ -117,6 +117,8 @@ double* member(MotionRequest& request, Action action) {
             return &request.look;
         case Action::speed:
             return &request.speed;
+        case Action::zoom:
+            return &request.zoom;
         default:
             return nullptr;
     }

@@ -21,7 +21,8 @@ enum class Action : std::uint8_t {
     up,
     turn,
     look,
-    speed,  // the six that have a size, as in MotionRequest
+    speed,
+    zoom,  // the seven that have a size, as in MotionRequest
     next_viewpoint,
     reset,
     tour,
@@ -30,13 +31,14 @@ enum class Action : std::uint8_t {
     stop,        // emergency stop: latched
     stop_reset,  // clears the latch once the stop is no longer asserted
 };
-constexpr std::size_t action_count = 14;
+constexpr std::size_t action_count = 15;
 
 /// As in TOML: "forward", "next_viewpoint", ...; index is the Action.
 std::span<const std::string_view> action_names();
 std::string_view name_of(Action action);
-[[nodiscard]] constexpr bool has_size(Action a) { return a >= Action::forward && a <= Action::speed; }
-/// Whether the action moves the walker; the neutral interlock watches these. Speed does not: a throttle keeps its place.
+[[nodiscard]] constexpr bool has_size(Action a) { return a >= Action::forward && a <= Action::zoom; }
+/// Whether the action moves the walker; the neutral interlock watches these, not speed and zoom: a throttle keeps
+/// its place.
 [[nodiscard]] constexpr bool moves(Action a) { return a >= Action::forward && a <= Action::look; }
 
 /// A control, by its name ("x"), else by usage page and usage ("0x01:0x30"). If not empty, `collection` must be a part of the

@@ -9,7 +9,8 @@ namespace surefoot::input {
 
 bool bound(MotionRequest& request) {
     bool finite = true;
-    for (double* part : {&request.forward, &request.side, &request.up, &request.turn, &request.look, &request.speed}) {
+    for (double* part :
+         {&request.forward, &request.side, &request.up, &request.turn, &request.look, &request.speed, &request.zoom}) {
         if (std::isfinite(*part)) {
             *part = std::clamp(*part, -64.0, 64.0);  // no overflow in the squares below
             continue;
@@ -29,6 +30,7 @@ bool bound(MotionRequest& request) {
         request.look /= turning;
     }
     request.speed = std::clamp(request.speed, -1.0, 1.0);
+    request.zoom = std::clamp(request.zoom, -1.0, 1.0);
     for (double* angle : {&request.turn_by_rad, &request.look_by_rad}) {
         finite = finite && std::isfinite(*angle);
         *angle = std::isfinite(*angle) ? std::clamp(*angle, -std::numbers::pi, std::numbers::pi) : 0;
@@ -45,6 +47,7 @@ MotionRequest merge(std::span<const MotionRequest> requests) {
         sum.turn += request.turn;
         sum.look += request.look;
         sum.speed += request.speed;
+        sum.zoom += request.zoom;
         sum.turn_by_rad += request.turn_by_rad;
         sum.look_by_rad += request.look_by_rad;
         sum.next_viewpoint |= request.next_viewpoint;

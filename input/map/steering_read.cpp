@@ -90,7 +90,7 @@ Result<void> read_axis(TableReader& table, std::vector<AxisMapping>& into) {
     choose(table, "action", action_names(), m.action);
     if (m.action != Action::none && !has_size(m.action))
         table.refuse("action", fmt::format("= {} is no action for an axis", name_of(m.action)),
-                     "Use forward, side, up, turn, look or speed");
+                     "Use forward, side, up, turn, look, speed or zoom");
     read_shape(table, m.shape);
     choose(table, "rest", words::rests, m.rest);
     table.flag("invert", m.invert);
@@ -112,7 +112,7 @@ void two_actions(TableReader& table, std::array<Action, 2>& actions) {
         actions[i] = static_cast<Action>(index[i]);
         if (actions[i] != Action::none && !has_size(actions[i]))
             table.refuse("actions", fmt::format("names {}, which is no action for a stick or hat", name_of(actions[i])),
-                         "Use forward, side, up, turn, look, speed or none");
+                         "Use forward, side, up, turn, look, speed, zoom or none");
     }
 }
 
@@ -203,6 +203,8 @@ Result<void> read_motion(TableReader& table, MotionLimits& m) {
     table.number("look_rad_s", 0.01, 10, "rad/s", m.look_rad_s);
     table.number("accel_rad_s2", 0.1, 1000, "rad/s2", m.accel_rad_s2);
     table.number("max_pitch_rad", 0, 1.57, "rad", m.max_pitch_rad);
+    table.number("max_zoom", 1, 50, "factor", m.max_zoom);
+    table.number("zoom_per_s", 1.01, 10, "factor a second", m.zoom_per_s);
     table.flag("level", m.level);
     table.number("min_cutoff_hz", 0.5, 100, "Hz", m.filter.min_cutoff_hz);
     table.number("cutoff_slope", 0, 100, "Hz per full deflection a second", m.filter.slope);

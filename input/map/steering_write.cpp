@@ -133,6 +133,8 @@ void write_limits(Writer& w, const MotionLimits& m, const SafetyLimits& s) {
     w.number("look_rad_s", m.look_rad_s, dm.look_rad_s);
     w.number("accel_rad_s2", m.accel_rad_s2, dm.accel_rad_s2);
     w.number("max_pitch_rad", m.max_pitch_rad, dm.max_pitch_rad);
+    w.number("max_zoom", m.max_zoom, dm.max_zoom);
+    w.number("zoom_per_s", m.zoom_per_s, dm.zoom_per_s);
     w.flag("level", m.level);
     w.number("min_cutoff_hz", m.filter.min_cutoff_hz, dm.filter.min_cutoff_hz);
     w.number("cutoff_slope", m.filter.slope, dm.filter.slope);

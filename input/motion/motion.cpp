@@ -86,7 +86,8 @@ void follow(MotionState& state, const MotionLimits& limits, const MotionRequest&
     const double accel = brake ? std::max(limits.accel_m_s2, limits.max_m_s / limits.brake_s) : limits.accel_m_s2;
     const double accel_turning = brake ? std::max(limits.accel_rad_s2, swing_rad_s / limits.brake_s) : limits.accel_rad_s2;
     state.velocity = towards(state.velocity, wanted_velocity(state.walk.value, request.speed, limits), accel * dt_s);
-    const dvec2 rates = state.turning.value * dvec2(limits.turn_rad_s, limits.look_rad_s);
+    // What is magnified is turned more slowly: the picture passes at the same pace.
+    const dvec2 rates = state.turning.value * dvec2(limits.turn_rad_s, limits.look_rad_s) * std::exp(-state.zoom);
     state.rates = towards(state.rates, rates, accel_turning * dt_s);
 }
 
@@ -113,6 +114,20 @@ void integrate(MotionState& state, const MotionLimits& limits, const dvec3& velo
     state.yaw.wrap();
 }
 
+/// The field of view at a magnification, whose natural logarithm is given.
+double zoomed(double fov_y_rad, double zoom) {
+    return zoom == 0 ? fov_y_rad : 2 * std::atan(std::tan(fov_y_rad / 2) * std::exp(-zoom));
+}
+
+void follow_zoom(MotionState& state, const MotionLimits& limits, double request, Order order, double dt_s) {
+    const double fastest = std::log(limits.zoom_per_s), before = state.zoom_rate;
+    const double step = dt_s * (order == Order::brake ? std::max(zoom_accel_s2, fastest / limits.brake_s) : zoom_accel_s2);
+    state.zoom_rate += std::clamp(request * fastest - before, -step, step);
+    const double to = state.zoom + 0.5 * (before + state.zoom_rate) * dt_s;
+    state.zoom = std::clamp(to, 0.0, std::log(limits.max_zoom));
+    if (state.zoom != to) state.zoom_rate = 0;
+}
+
 }  // namespace
 
 void Angle::add(double increment) {
@@ -126,7 +141,7 @@ void Angle::wrap() {
     if (value < -std::numbers::pi) value += two_pi, carry -= two_pi_low;
 }
 
-bool place(MotionState& state, const Pose& pose) {
+bool place(MotionState& state, const Pose& pose, bool zooms) {
     const dquat q = pose.orientation;
     const double norm = glm::length(q);
     if (!finite(pose.position) || !std::isfinite(norm) || norm < 1e-9 || !std::isfinite(pose.fov_y_rad)) return false;
@@ -134,7 +149,9 @@ bool place(MotionState& state, const Pose& pose) {
     const dvec3 ahead = unit * dvec3(0, 0, -1), up = unit * dvec3(0, 1, 0), right = unit * dvec3(1, 0, 0);
     const double level = std::hypot(ahead.x, ahead.z);
     state.position = pose.position;
-    state.fov_y_rad = pose.fov_y_rad;
+    state.zoom = zooms ? std::max(0.0, std::log(std::tan(state.fov_y_rad / 2) / std::tan(pose.fov_y_rad / 2))) : 0;
+    if (!zooms) state.fov_y_rad = pose.fov_y_rad;
+    state.zoom_rate = 0;
     state.pitch.set(std::atan2(ahead.y, level));
     // Straight up or down the heading shows in the right hand only.
     state.yaw.set(level > 1e-9 ? std::atan2(-ahead.x, -ahead.z) : std::atan2(-right.z, right.x));
@@ -153,7 +170,7 @@ bool place(MotionState& state, const Pose& pose) {
 Pose pose_of(const MotionState& state) {
     Pose pose;
     pose.position = state.position;
-    pose.fov_y_rad = state.fov_y_rad;
+    pose.fov_y_rad = zoomed(state.fov_y_rad, state.zoom);
     pose.orientation = about_y(state.yaw.value) * about_x(state.pitch.value);
     if (state.roll != 0) pose.orientation = pose.orientation * about_z(state.roll);
     pose.orientation = glm::normalize(pose.orientation);
@@ -171,13 +188,14 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     const bool points = request.turn_by_rad != 0 || request.look_by_rad != 0;
     if (points) {
         state.pointed_ns = state.last_ns;
-        state.pointer.add(dvec2(request.turn_by_rad, request.look_by_rad));
+        state.pointer.add(dvec2(request.turn_by_rad, request.look_by_rad) * std::exp(-state.zoom));
     }
     if (command.order == Order::stop) {
         if (ground.halt != nullptr) ground.halt(ground.context);
         state.velocity = dvec3(0.0);
         state.rise_m_s = 0;
         state.rates = dvec2(0.0);
+        state.zoom_rate = 0;
         state.pointer.rest();
         state.walk.set(dvec3(0.0));
         state.turning.set(dvec2(0.0));
@@ -185,6 +203,7 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
         const dvec3 velocity = state.velocity;
         const dvec2 rates = state.rates;
         follow(state, limits, request, command.order, dt_s);
+        follow_zoom(state, limits, request.zoom, command.order, dt_s);
         const dvec2 turned = state.pointer.step(limits.pointer_rad_s, limits.pointer_rad_s2, dt_s);
         integrate(state, limits, 0.5 * (velocity + state.velocity), 0.5 * (rates + state.rates) + turned / dt_s, dt_s, ground);
     }
@@ -196,6 +215,7 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     sample.velocity_m_s = frame * state.velocity + dvec3(0, state.rise_m_s, 0);
     const dvec2 turning = state.rates + state.pointer.rates;
     sample.angular_rad_s = dvec3(0, turning.x, 0) + about_y(state.yaw.value) * dvec3(turning.y, 0, 0);
+    sample.zoom_rate = state.zoom_rate;
     sample.pointed = state.pointer.moves() || (state.pointed_ns >= 0 && now_ns - state.pointed_ns < pointer_pause_ns);
     sample.stamp_ns = command.stamp_ns;
     sample.sequence = ++state.sequence;

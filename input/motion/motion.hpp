@@ -36,6 +36,8 @@ struct MotionLimits {
     double accel_rad_s2 = 8;
     double pointer_rad_s = 8, pointer_rad_s2 = 40;  ///< of turns by a pointer, beside those
     double max_pitch_rad = 1.48;
+    double max_zoom = 8;        ///< largest magnification; 1: there is no zoom
+    double zoom_per_s = 2;      ///< the magnification's factor in a second of full request
     double brake_s = 0.03;      ///< Order::brake reaches its request within this, from any speed
     bool level = false;         ///< true: forward is level however the eye looks; false: along the eye's -Z
     double frame_s = 1.0 / 30;  ///< how far ahead a sample's uncertainty is stated
@@ -43,6 +45,8 @@ struct MotionLimits {
 };
 /// Maximum time integrated in one step: after a stall the walk continues without a leap.
 constexpr double longest_step_s = 0.05;
+/// Acceleration of the magnification's natural logarithm, 1/s2.
+constexpr double zoom_accel_s2 = 4;
 
 /// An angle summed with compensation (Kahan 1965), so that horizon and heading do not drift in hours.
 struct Angle {
@@ -55,12 +59,13 @@ struct Angle {
 /// State of the walker between two steps.
 struct MotionState {
     dvec3 position{0.0};
-    Angle yaw, pitch;  ///< yaw > 0 to the left, pitch > 0 upwards
-    double roll = 0;   ///< of the pose it was placed with; nothing here changes it
-    double fov_y_rad = Pose{}.fov_y_rad;
-    dvec3 velocity{0.0};  ///< walker's frame: right, up, back; m/s
-    double rise_m_s = 0;  ///< upwards, by the ground
-    dvec2 rates{0.0};     ///< yaw, pitch; rad/s
+    Angle yaw, pitch;                     ///< yaw > 0 to the left, pitch > 0 upwards
+    double roll = 0;                      ///< of the pose it was placed with; nothing here changes it
+    double fov_y_rad = Pose{}.fov_y_rad;  ///< of magnification 1
+    double zoom = 0, zoom_rate = 0;       ///< natural logarithm of the magnification, and its rate, 1/s
+    dvec3 velocity{0.0};                  ///< walker's frame: right, up, back; m/s
+    double rise_m_s = 0;                  ///< upwards, by the ground
+    dvec2 rates{0.0};                     ///< yaw, pitch; rad/s
     OneEuro<dvec3> walk;
     OneEuro<dvec2> turning;
     PointerTurn pointer;
@@ -72,8 +77,9 @@ struct MotionState {
     std::uint64_t clock_back = 0;  ///< steps with a time before the last one; time stood still
 };
 
-/// Moves the eye to a pose, at rest. False: the pose is not finite, and nothing changed.
-bool place(MotionState& state, const Pose& pose);
+/// Moves the eye to a pose, at rest. `zooms`: its field of view is a magnified one of before; else that of magnification 1.
+/// False: the pose is not finite, and nothing changed.
+bool place(MotionState& state, const Pose& pose, bool zooms = false);
 [[nodiscard]] Pose pose_of(const MotionState& state);
 
 /// One step to `now_ns`. The rate of steps may vary. The first step only sets the time.
@@ -90,9 +96,9 @@ Pose carried(const NavigationSample& sample, double by_s);
 
 /// The pose `lead_s` after the sample if the hand stays as it is. Its uncertainty bounds the distance to any pose that the limits
 /// allow then. The bound covers a stop at any moment, by order or by a wall, and a new start in any direction. It holds for every
-/// input and order, except `brake` towards a moving request and the first moment of a pointer's turn. `rise_m_s2`: that of the
-/// Ground. The bound: |v(s) - v0| <= |v0| + A s, integrated over the lead t, with A = a + |v0| (|w0| + alpha t / 2), as the
-/// walker's frame turns.
+/// input and order, except `brake` towards a moving request and the first moment of a zoom and of a pointer's turn. `rise_m_s2`:
+/// that of the Ground. The bound: |v(s) - v0| <= |v0| + A s, integrated over the lead t, with A = a + |v0| (|w0| + alpha t / 2),
+/// as the walker's frame turns.
 Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double rise_m_s2 = 0);
 
 }  // namespace surefoot::input

@@ -16,6 +16,7 @@ double strayed(double rate, double speed, double t) { return speed * t + 0.5 * r
 Pose carried(const NavigationSample& sample, double by_s) {
     Pose pose = sample.pose;
     pose.position += sample.velocity_m_s * by_s;
+    if (sample.zoom_rate != 0) pose.fov_y_rad = 2 * std::atan(std::tan(pose.fov_y_rad / 2) * std::exp(-sample.zoom_rate * by_s));
     const double turning = glm::length(sample.angular_rad_s);
     if (turning > 0) {
         const double half = 0.5 * turning * by_s;
@@ -36,6 +37,8 @@ Prediction predict(const NavigationSample& sample, const MotionLimits& limits, d
     // Heading and pitch turn one after the other, the prediction about one axis: they differ by half their product.
     const double max_turning = turning + accel_rad_s2 * t;
     ahead.uncertainty_rad = strayed(accel_rad_s2, turning, t) + 0.5 * max_turning * max_turning * t * t;
+    // A side of the view lies at tan(a) = c e^-z, so a changes by sin(2 a) / 2 of what z does.
+    if (sample.zoom_rate != 0) ahead.uncertainty_rad += 0.5 * strayed(zoom_accel_s2, std::abs(sample.zoom_rate), t);
     return ahead;
 }
 

@@ -32,6 +32,8 @@ constexpr UsualKey usual_keys[] = {
     {"key-page-down", Action::up, -1},
     {"key-left-shift", Action::speed, run_scale},
     {"key-right-shift", Action::speed, run_scale},
+    {"key-z", Action::zoom, 1},
+    {"key-x", Action::zoom, -1},
     {"key-n", Action::next_viewpoint, 1},
     {"key-home", Action::reset, 1},
     {"key-t", Action::tour, 1},

@@ -21,7 +21,7 @@ constexpr std::array all_backends = {
     Backend{window_backend, "a window on the X server at $DISPLAY", BackendKind::window,
             [](Options options) { return open_window(options); }},
     Backend{"kms", "a screen without a window system, by the kernel's modesetting", BackendKind::kms,
-            [](Options options) { return open_kms(options.screen); }},
+            [](Options options) { return open_kms(options.screen, options.viewport); }},
     Backend{"osmesa", "Mesa software rendering in memory, without a driver", BackendKind::osmesa,
             [](Options) { return open_osmesa(); }},
     Backend{"null", "draws nothing and charges the predicted cost", BackendKind::null, nullptr},

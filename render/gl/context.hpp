@@ -45,7 +45,7 @@ Result<std::unique_ptr<Context>> open_egl_surfaceless();
 Result<std::unique_ptr<Context>> open_egl_device();
 Result<std::unique_ptr<Context>> open_osmesa();
 Result<std::unique_ptr<Context>> open_window(const DeviceOptions& options);
-Result<std::unique_ptr<Context>> open_kms(const ScreenOptions& options);
+Result<std::unique_ptr<Context>> open_kms(const ScreenOptions& options, model::Viewport picture);
 
 /// Opens the backend of options.kind (not null).
 Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options);

@@ -117,8 +117,8 @@ private:
     std::array<Known, 8> known_{};
 };
 
-/// Three plain buffers of the card, mapped: one on the screen, one that waits for its refresh, one to fill. Pictures are drawn
-/// elsewhere and copied there.
+/// Three plain buffers of the card, of the screen's size or of pictures that its plane enlarges, mapped: one on the screen, one
+/// that waits for its refresh, one to fill. Pictures are drawn elsewhere and copied there.
 class PlainContext final : public Context {
 public:
     PlainContext(std::unique_ptr<Context> drawing, std::unique_ptr<OpenScreen> screen)
@@ -274,7 +274,7 @@ Result<std::unique_ptr<Context>> open_gbm(std::unique_ptr<OpenScreen>& screen, b
 
 }  // namespace
 
-Result<std::unique_ptr<Context>> open_kms(const ScreenOptions& options) {
+Result<std::unique_ptr<Context>> open_kms(const ScreenOptions& options, model::Viewport picture) {
     auto drm = load_drm();
     if (!drm) return drm.error();
     auto screen = wait_for_screen(*drm, options);
@@ -283,6 +283,8 @@ Result<std::unique_ptr<Context>> open_kms(const ScreenOptions& options) {
     auto drawing = open_egl_surfaceless();
     if (!drawing) drawing = open_osmesa();
     if (!drawing) return drawing.error();
+    OpenScreen& open = **screen;
+    if (open.card->enlarge(picture.width, picture.height)) open.surface = {picture.width, picture.height, false};
     auto context = std::make_unique<PlainContext>(std::move(*drawing), std::move(*screen));
     if (auto made = context->make_buffers(); !made) return made.error();
     return std::unique_ptr<Context>(std::move(context));

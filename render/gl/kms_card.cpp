@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "render/gl/kms_list.hpp"
+#include "render/gl/window_fit.hpp"
 #include "rt/base/file.hpp"
 
 namespace surefoot::gl {
@@ -250,9 +251,14 @@ bool KmsCard::add_to(drmModeAtomicReq* request, ShownBuffer buffer) const {
     for (const std::uint32_t adjustment : adjustments_)  // none of another program's stays
         if (adjustment != 0) add(crtc_.id, adjustment, 0);
     const std::uint64_t width = timings_.hdisplay, height = timings_.vdisplay;
-    const std::array<std::uint64_t, 4> source{0, 0, (swaps_sides_ ? height : width) << 16U,
-                                              (swaps_sides_ ? width : height) << 16U};
-    const std::array<std::uint64_t, 4> shown{0, 0, width, height};
+    std::array<std::uint64_t, 4> source{0, 0, (swaps_sides_ ? height : width) << 16U, (swaps_sides_ ? width : height) << 16U};
+    std::array<std::uint64_t, 4> shown{0, 0, width, height};
+    if (enlarged_width_ != 0) {
+        const FittedPicture fit = fit_picture(enlarged_width_, enlarged_height_, timings_.hdisplay, timings_.vdisplay);
+        source = {0, 0, std::uint64_t{enlarged_width_} << 16U, std::uint64_t{enlarged_height_} << 16U};
+        shown = {static_cast<std::uint64_t>(fit.x), static_cast<std::uint64_t>(fit.y), static_cast<std::uint64_t>(fit.width),
+                 static_cast<std::uint64_t>(fit.height)};
+    }
     add(plane_.id, plane_.framebuffer, buffer);
     add(plane_.id, plane_.crtc, crtc_.id);
     for (std::size_t i = 0; i < source.size(); ++i) {
@@ -268,12 +274,44 @@ bool KmsCard::add_to(drmModeAtomicReq* request, ShownBuffer buffer) const {
     return added;
 }
 
-int KmsCard::set_mode(ShownBuffer buffer) {
+int KmsCard::commit_mode(ShownBuffer buffer, std::uint32_t flags) const {
     drmModeAtomicReq* request = drm_.AtomicAlloc();
     if (request == nullptr) return ENOMEM;
     int error = add_to(request, buffer) ? 0 : ENOMEM;
-    if (error == 0 && drm_.AtomicCommit(file_, request, DRM_MODE_ATOMIC_ALLOW_MODESET, nullptr) != 0) error = errno;
+    if (error == 0 && drm_.AtomicCommit(file_, request, DRM_MODE_ATOMIC_ALLOW_MODESET | flags, nullptr) != 0) error = errno;
     drm_.AtomicFree(request);
+    return error;
+}
+
+/// Whether the card would set the mode with a plain buffer of that size: 0 or an errno.
+int KmsCard::try_buffer(std::uint32_t width, std::uint32_t height) {
+    drm_mode_create_dumb plain{};
+    plain.width = width;
+    plain.height = height;
+    plain.bpp = 32;
+    if (drm_.Ioctl(file_, DRM_IOCTL_MODE_CREATE_DUMB, &plain) != 0) return errno;
+    int error = 0;
+    const ShownBuffer buffer = add_buffer(plain.handle, plain.pitch, width, height, error);
+    if (error == 0) error = commit_mode(buffer, DRM_MODE_ATOMIC_TEST_ONLY);
+    remove_buffer(buffer);
+    drm_mode_destroy_dumb no_more{plain.handle};
+    drm_.Ioctl(file_, DRM_IOCTL_MODE_DESTROY_DUMB, &no_more);
+    return error;
+}
+
+bool KmsCard::enlarge(std::uint32_t width, std::uint32_t height) {
+    const bool smaller = width > 0 && height > 0 && width <= timings_.hdisplay && height <= timings_.vdisplay &&
+                         (width < timings_.hdisplay || height < timings_.vdisplay);
+    if (!smaller || turned_ != DRM_MODE_ROTATE_0 || !turns_) return false;
+    enlarged_width_ = width;
+    enlarged_height_ = height;
+    if (try_buffer(width, height) == 0) return true;
+    enlarged_width_ = enlarged_height_ = 0;
+    return false;
+}
+
+int KmsCard::set_mode(ShownBuffer buffer) {
+    const int error = commit_mode(buffer, 0);
     std::uint64_t sequence = 0, time_ns = 0;
     if (error == 0) counts_refreshes_ = drm_.CrtcGetSequence(file_, crtc_.id, &sequence, &time_ns) == 0 && time_ns != 0;
     return error;

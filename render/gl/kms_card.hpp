@@ -31,8 +31,11 @@ public:
     /// The plane turns pictures as wanted. Where it cannot, a half turn is left to who draws.
     [[nodiscard]] bool turns() const { return turns_; }
 
-    /// An id for a buffer of the mode's size (turned, where the plane turns it); 0 and an errno in `error` where the card
-    /// refuses.
+    /// Whether the plane enlarges smaller pictures of this size in plain buffers to the screen, as large as fits. The card says
+    /// so in a trial. Buffers then have this size. The card must be taken; turned pictures are not enlarged.
+    bool enlarge(std::uint32_t width, std::uint32_t height);
+    /// An id for a buffer of the mode's size, turned where the plane turns it, or of the size that enlarge() took. 0 where the
+    /// card refuses; the errno is in `error`.
     ShownBuffer add_buffer(std::uint32_t handle, std::uint32_t stride, std::uint32_t width, std::uint32_t height, int& error);
     void remove_buffer(ShownBuffer buffer);
 
@@ -65,6 +68,8 @@ private:
     [[nodiscard]] std::uint32_t property(std::uint32_t object, std::uint32_t type, const char* name) const;
     [[nodiscard]] std::uint64_t property_value(std::uint32_t object, std::uint32_t type, const char* name) const;
     bool add_to(drmModeAtomicReq* request, ShownBuffer buffer) const;
+    int commit_mode(ShownBuffer buffer, std::uint32_t flags) const;
+    int try_buffer(std::uint32_t width, std::uint32_t height);
 
     const Drm drm_;
     Screen screen_;
@@ -77,6 +82,8 @@ private:
     std::uint32_t connector_crtc_ = 0;  ///< a property
     std::uint64_t turned_ = 0;          ///< of the plane's rotation
     bool turns_ = true, swaps_sides_ = false;
+    std::uint32_t enlarged_width_ = 0,
+                  enlarged_height_ = 0;           ///< of pictures that the plane enlarges; 0: it shows them as they are
     std::uint32_t link_status_ = 0;               ///< of the connector
     std::array<std::uint32_t, 4> adjustments_{};  ///< of the CRTC: colours and a variable rate
     std::uint32_t mode_blob_ = 0;

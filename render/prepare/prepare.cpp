@@ -117,6 +117,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
       groups(m.group_losses.empty() ? nullptr : std::make_unique<model::LossGroups>(m)) {
     options.max_candidates = std::max(1U, options.max_candidates);
     options.acuity_rad = std::clamp(finite_or(options.acuity_rad, 0.0), 0.0, 1.0);
+    options.acuity_fov_y_rad = std::clamp(finite_or(options.acuity_fov_y_rad, 0.0), 0.0, 3.1);
     std::uint32_t max_children = 0, max_reps = 1;
     std::size_t max_forms = 0;  // nodes may share some
     for (const model::Node& node : m.nodes) {
@@ -389,6 +390,9 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     out.frame = frame;
     out.viewport = viewport;
     out.acuity_rad = s.options.acuity_rad;
+    if (s.options.acuity_fov_y_rad > 0)
+        out.acuity_rad = std::clamp(
+            out.acuity_rad * std::tan(region.centre.fov_y_rad / 2) / std::tan(s.options.acuity_fov_y_rad / 2), 0.0, 1.0);
     out.candidates.clear();
     out.choices.clear();
     out.truncated = false;

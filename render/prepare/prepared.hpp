@@ -114,6 +114,8 @@ struct PrepareOptions {
     double target_error_rad = 0;
     /// Angle that the eye can tell apart, seen in the picture's own field of view; 0: unknown, so a pixel is.
     double acuity_rad = 0;
+    /// The field of view at which the acuity holds, radians; a narrower one is magnified for the eye. 0: it holds at any.
+    double acuity_fov_y_rad = 0;
     std::uint32_t max_candidates = 1U << 18U;
     std::uint32_t max_choices = 1U << 20U;
     double focus_strength = 0.5;  ///< 0: the periphery counts as much as the centre

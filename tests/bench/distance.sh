@@ -5,7 +5,7 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154 # work, surefoot, state, path, build: of run
 
-distance_frames=900 distance_turns=3 distance_tries=9
+distance_frames=900 distance_turns=3
 
 # One walk in real time. Sets p99 of its frames, ms; the ledger is WORK/distance-LABEL.csv.
 distance_walk() { # LABEL NAME RATE OPTIONS...
@@ -29,48 +29,58 @@ distance_rate() { # NAME
   rate=$(awk "BEGIN { printf \"%.3f\", 600 / sqrt($coarsest * $(value frame_ms.p50)) }")
 }
 
-# The accuracy at which `distance` takes as long as $1 ms (p99), about: between the two nearest, on logarithms. Sets accuracy. 2 rad^-1 where
-# even that takes longer.
-distance_near() { # P99 NAME RATE
-  local wanted=$1 low=2 high=5000 low_ms=0 high_ms=0 try
-  accuracy=10
-  for (( try = 1; try <= distance_tries; ++try )); do
-    distance_walk "$2-try-$try" "$2" "$3" --selector distance --accuracy "$accuracy" || return 1
-    echo "tests/bench/run: $2: distance at $accuracy rad^-1 has p99 $p99 ms, wanted $wanted" >&2
-    if awk "BEGIN { r = $p99 / $wanted; exit !(r <= 1.06 && r >= 1 / 1.06) }"; then return 0; fi
-    if awk "BEGIN { exit !($p99 > $wanted) }"; then high=$accuracy high_ms=$p99; else low=$accuracy low_ms=$p99; fi
-    accuracy=$(awk "BEGIN { part = $low_ms > 0 && $high_ms > $low_ms ? log($wanted / $low_ms) / log($high_ms / $low_ms) : 0.5
-      if (part < 0.1) part = 0.1; if (part > 0.9) part = 0.9
-      printf \"%.4g\", $low * ($high / $low) ^ part }")
-  done
-  accuracy=$(awk "BEGIN { printf \"%.4g\", $low_ms > 0 ? sqrt($low * $high) : 2 }")
+# distance_fit WANTED: of the lines "accuracy p99" on stdin the accuracy at which p99 is WANTED ms, at least 2 rad^-1, by a line on
+# logarithms; the line's p99 there; its standard error in per cent. A stall of the machine makes a walk's p99 longer by a third and
+# more, so slope and height are medians (Theil 1950, Sen 1968), and so is the error.
+distance_fit() {
+  awk -v wanted="$1" '
+    function middle(list, n,    i, j, t) {
+      for (i = 2; i <= n; ++i) { t = list[i]; for (j = i - 1; j > 0 && list[j] > t; --j) list[j + 1] = list[j]; list[j + 1] = t }
+      return n % 2 ? list[(n + 1) / 2] : (list[n / 2] + list[n / 2 + 1]) / 2
+    }
+    { x[NR] = log($1); y[NR] = log($2) }
+    END {
+      for (i = 1; i <= NR; ++i) for (j = i + 1; j <= NR; ++j) if (x[j] != x[i]) slopes[++count] = (y[j] - y[i]) / (x[j] - x[i])
+      b = middle(slopes, count)
+      for (i = 1; i <= NR; ++i) heights[i] = y[i] - b * x[i]
+      a = middle(heights, NR)
+      for (i = 1; i <= NR; ++i) { rest = y[i] - a - b * x[i]; rests[i] = rest < 0 ? -rest : rest; mean += x[i] / NR }
+      for (i = 1; i <= NR; ++i) sxx += (x[i] - mean) ^ 2
+      at = b > 0.02 ? (log(wanted) - a) / b : log(2)
+      if (at < log(2)) at = log(2)
+      # 1.4826: from the median of what is left to a deviation. 1.25: a median is known less well than a mean.
+      printf "%.4g %.4g %.3g\n", exp(at), exp(a + b * at), 100 * 1.25 * 1.4826 * middle(rests, NR) * sqrt(1 / NR + (at - mean) ^ 2 / sxx)
+    }'
 }
 
-# The p99 of equal walks differs by an eighth. So a line is laid through those of nine angles near $accuracy, on logarithms, by least
-# squares. Sets accuracy to where it is $1 ms, at least 2 rad^-1,
-# and line_p99 and line_error to the line's p99 there and its standard error in per cent.
-distance_line() { # P99 NAME RATE
-  local wanted=$1 factor fitted points=$work/distance-points
+# The accuracy at which `distance` takes about $1 ms (p99). From 4 rad^-1 up until two walks take over 1.15 times as long; then by a line
+# through the last five. Sets accuracy.
+distance_near() { # P99 NAME RATE
+  local wanted=$1 longer=0 points=$work/distance-points
   : >"$points"
-  for factor in 0.7 0.8 0.87 0.93 1 1.07 1.15 1.25 1.4; do
-    distance_walk "$2-line" "$2" "$3" --selector distance --accuracy "$(awk "BEGIN { printf \"%.4g\", $accuracy * $factor }")" || return 1
-    awk "BEGIN { print $accuracy * $factor, $p99 }" >>"$points"
+  for accuracy in 4 7.2 13 23 42 75 136 245 441 794 1429 2572; do
+    distance_walk "$2-near" "$2" "$3" --selector distance --accuracy "$accuracy" || return 1
+    echo "$accuracy $p99" >>"$points"
+    echo "tests/bench/run: $2: distance at $accuracy rad^-1 has p99 $p99 ms, wanted $wanted" >&2
+    if awk "BEGIN { exit !($p99 > 1.15 * $wanted) }"; then longer=$((longer + 1)); fi
+    if (( longer == 2 )); then break; fi
   done
-  fitted=$(awk -v wanted="$wanted" '
-    { x[NR] = log($1); y[NR] = log($2); sx += x[NR]; sy += y[NR] }
-    END {
-      mx = sx / NR; my = sy / NR
-      for (i = 1; i <= NR; ++i) { sxx += (x[i] - mx) ^ 2; sxy += (x[i] - mx) * (y[i] - my) }
-      b = sxy / sxx
-      for (i = 1; i <= NR; ++i) rest += (y[i] - my - b * (x[i] - mx)) ^ 2
-      at = b > 0.02 ? mx + (log(wanted) - my) / b : log(2)
-      if (at < log(2)) at = log(2)
-      printf "%.4g %.4g %.3g", exp(at), exp(my + b * (at - mx)), 100 * sqrt(rest / (NR - 2) * (1 / NR + (at - mx) ^ 2 / sxx))
-    }' "$points")
-  read -r accuracy line_p99 line_error <<<"$fitted"
-  echo "tests/bench/run: $2: by a line through nine angles distance has p99 $line_p99 ms at $accuracy rad^-1, +- $line_error %; wanted $wanted" >&2
+  read -r accuracy _ < <(tail -5 "$points" | distance_fit "$wanted")
 }
-agree() { awk "BEGIN { r = $1 / $2; exit !(r <= 1.05 && r >= 1 / 1.05) }"; } # within 5 %
+
+# A line through nine angles near $accuracy, and through those of distance_near that are at most five times as wide or narrow: over a
+# narrow range the machine's changes are larger than those of the angle. Sets accuracy to where its p99 is $1 ms, and line_p99 and
+# line_error to its p99 there and the standard error in per cent.
+distance_line() { # P99 NAME RATE
+  local wanted=$1 factor points=$work/distance-points near=$accuracy at
+  for factor in 0.6 0.7 0.8 0.9 1 1.12 1.25 1.42 1.65; do
+    at=$(awk "BEGIN { printf \"%.4g\", $accuracy * $factor }")
+    distance_walk "$2-line" "$2" "$3" --selector distance --accuracy "$at" || return 1
+    echo "$at $p99" >>"$points"
+  done
+  read -r accuracy line_p99 line_error < <(awk -v near="$near" '$1 <= 5 * near && $1 >= near / 5' "$points" | distance_fit "$wanted")
+  echo "tests/bench/run: $2: by a line distance has p99 $line_p99 ms at $accuracy rad^-1, +- $line_error %; wanted $wanted" >&2
+}
 
 # distance_figures LABEL: median and least of the frames' accuracies, and how many frames are exact.
 distance_figures() {
@@ -135,10 +145,10 @@ distance_scene() { # NAME RATE
   distance_line "$(middle_of "${first[@]}")" "$name" "$rate" || return 0
   distance_in_turns "$name" "$rate" || return 0
   wanted=$(middle_of "${first[@]}" "${our_p99[@]}")
-  # Where even the widest angle takes longer, it may: it has more time.
+  # Where the angle's walks take longer, up to a quarter, they may: it has more time, so the ratios are too small.
   if ! awk -v line="$line_p99" -v wanted="$wanted" -v walks="$(middle_of "${their_p99[@]}")" -v error="$line_error" -v at="$accuracy" '
       function near(a, b, by) { return a / b <= by && b / a <= by }
-      BEGIN { exit !((at <= 2 && walks > wanted) || (near(line, wanted, 1.05) && near(walks, wanted, 1.1) && error <= 5)) }'; then
+      BEGIN { exit !((at <= 2 && walks > wanted) || (near(line, wanted, 1.05) && walks >= wanted / 1.1 && walks <= 1.25 * wanted && error <= 5)) }'; then
     echo "tests/bench/run: $name: p99 of the budget's six walks is $wanted ms, of the angle $line_p99 (+- $line_error %) by its line; in turns: $times" >&2
     failed=1
     return 0

@@ -373,12 +373,13 @@ TEST(Merge, NothingExceedsOneFullDeflection) {
     a.forward = b.forward = 1;
     a.side = 1;
     a.turn = b.turn = a.look = 1;
-    a.speed = b.speed = 1;
+    a.speed = b.speed = a.zoom = b.zoom = 1;
     b.tour = true;
     const MotionRequest sum = merge(std::vector{a, b});
     EXPECT_NEAR(std::hypot(sum.forward, sum.side, sum.up), 1, 1e-12);
     EXPECT_NEAR(std::hypot(sum.turn, sum.look), 1, 1e-12);
     EXPECT_EQ(sum.speed, 1);
+    EXPECT_EQ(sum.zoom, 1);
     EXPECT_TRUE(sum.tour);
     b.forward = -1;
     EXPECT_EQ(merge(std::vector{a, b}).forward, 0) << "two hands that pull apart";

@@ -91,6 +91,22 @@ TEST(SteeringFile, WritesWhatItReads) {
     EXPECT_EQ(read->devices[0].name, odd.name);
 }
 
+TEST(SteeringFile, ZoomIsReadAndWritten) {
+    const std::string text =
+        "[motion]\nmax_zoom = 4.0\nzoom_per_s = 3.0\n\n[[device]]\nname = \"box\"\n\n[[device.button]]\ncontrol = \"button-1\"\n"
+        "action = \"zoom\"\nscale = -1\n";
+    const auto parsed = parse_steering(text, "s.toml");
+    ASSERT_TRUE(parsed.ok()) << parsed.error().text();
+    EXPECT_EQ(parsed->motion.max_zoom, 4);
+    EXPECT_EQ(parsed->motion.zoom_per_s, 3);
+    EXPECT_EQ(parsed->devices[0].buttons[0].action, Action::zoom);
+    const auto again = parse_steering(steering_text(*parsed), "t.toml");
+    ASSERT_TRUE(again.ok()) << again.error().text();
+    EXPECT_EQ(again->motion.max_zoom, 4);
+    EXPECT_EQ(again->motion.zoom_per_s, 3);
+    EXPECT_EQ(again->devices[0].buttons[0].action, Action::zoom);
+}
+
 TEST(SteeringFile, DefaultsOfEveryClassSurviveTheFile) {
     const auto m = default_mapping(test::stick_controls(), DeviceClass::navigation);
     SteeringFile file;
@@ -105,6 +121,7 @@ TEST(SteeringFile, SlipsAreNamedWithLineKeyAndRemedy) {
     refused("[motoin]\n", 1, "The key 'motoin' is unknown", "'motion'");
     refused("[motion]\nwalk = 1\n", 2, "The key 'motion.walk' is unknown", "'walk_m_s'");
     refused("[motion]\nwalk_m_s = -1\n", 2, "motion.walk_m_s = -1 is not allowed", "a number from 0.01 to 100 (m/s)");
+    refused("[motion]\nmax_zoom = 0.5\n", 2, "motion.max_zoom = 0.5 is not allowed", "a number from 1 to 50 (factor)");
     refused("[motion]\nwalk_m_s = nan\n", 2, "motion.walk_m_s");
     refused("[motion]\nwalk_m_s = \"fast\"\n", 2, "motion.walk_m_s");
     refused("device = 3\n", 1, "device = 3 is not allowed", "Use a list of tables. Write [[device]]");

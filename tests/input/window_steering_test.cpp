@@ -103,6 +103,20 @@ TEST(WindowSteering, KeysWalkRunAndRest) {
     EXPECT_EQ(rig.source->log().count(), 6U);
 }
 
+TEST(WindowSteering, TwoKeysZoomInAndBack) {
+    WindowRig rig;
+    rig.run(5);
+    const double usual = rig.sample.pose.fov_y_rad;
+    rig.push({'z'});
+    rig.run(500);
+    EXPECT_NEAR(rig.sample.zoom_rate, std::numbers::ln2, 1e-9);
+    EXPECT_LT(rig.sample.pose.fov_y_rad, 0.6 * usual);
+    rig.push({'x'});
+    rig.run(1000);
+    EXPECT_EQ(rig.sample.pose.fov_y_rad, usual);
+    EXPECT_EQ(rig.violations, 0U);
+}
+
 TEST(WindowSteering, ATapOfAKeyBetweenTwoStepsCounts) {
     WindowRig rig;
     rig.run(5);

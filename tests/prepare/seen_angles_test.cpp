@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <numbers>
@@ -16,9 +17,10 @@ constexpr double seen_arcmin = std::numbers::pi / 180 / 60;
 const model::CostModel seen_costs = model::default_costs();
 
 PreparedFrame seen_from(const model::Model& m, const Pose& pose, double acuity_rad, float resolution = 1, double focus = 0.5,
-                        model::Viewport viewport = {}) {
+                        model::Viewport viewport = {}, double acuity_fov_y_rad = 0) {
     PrepareOptions options;
     options.acuity_rad = acuity_rad;
+    options.acuity_fov_y_rad = acuity_fov_y_rad;
     options.focus_strength = focus;
     options.max_visits = 0;
     Preparer preparer(m, seen_costs, options);
@@ -61,6 +63,19 @@ TEST(Acuity, AboveAPixelLimitsTheErrorsThatAreOffered) {
     // Of drawn pixels: at half the resolution an eighth of one is still below the acuity.
     EXPECT_NEAR(seen_from(m, pose, seen_arcmin, 0.5F).target_error_rad, seen_arcmin, 1e-9);
     EXPECT_NEAR(seen_from(m, pose, 0, 0.5F).target_error_rad, 0.25 * pixel_rad, 1e-9);
+}
+
+TEST(Acuity, IsAsMuchFinerAsThePictureIsMagnified) {
+    const model::Model m = test::town(3);
+    const Pose seat = before_the_town(60);
+    Pose zoomed = seat;
+    zoomed.fov_y_rad = 2 * std::atan(std::tan(seat.fov_y_rad / 2) / 4);
+    const auto acuity_at = [&](const Pose& pose) {
+        return seen_from(m, pose, seen_arcmin, 1, 0.5, {}, seat.fov_y_rad).acuity_rad;
+    };
+    EXPECT_EQ(acuity_at(seat), seen_arcmin);
+    EXPECT_NEAR(acuity_at(zoomed), seen_arcmin / 4, 1e-15);
+    EXPECT_EQ(seen_from(m, zoomed, seen_arcmin).acuity_rad, seen_arcmin) << "of a picture whose field of view is not known";
 }
 
 TEST(Acuity, ThatIsNoAngleCountsAsNone) {

@@ -3,6 +3,7 @@
 #include <linux/kd.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -10,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "render/gl/device.hpp"
 #include "render/image/image.hpp"
@@ -65,6 +67,27 @@ int compare(const std::string& png, const std::string& ppm, bool half_turn) {
     }
     std::printf("%zu of %zu pixels differ, by up to %d; %zu are not black\n", differing, pixels, max, bright);
     return differing == 0 && bright > pixels / 10 ? 0 : 1;
+}
+
+/// Prints the checksum that vkms gives a picture: of 16 bits a channel in the order alpha, red, green, blue; begun with 0, not
+/// inverted.
+int checksum(const std::string& png) {
+    const auto bytes = read_file(png);
+    const auto picture = bytes ? image::decode_image(*bytes, png) : Result<image::Image>(bytes.error());
+    if (!picture) {
+        std::printf("%s\n", picture.error().text().c_str());
+        return 1;
+    }
+    std::vector<std::uint16_t> channels;
+    for (std::size_t i = 0; i < picture->rgba.size(); i += 4) {
+        channels.push_back(0xffff);
+        for (std::size_t c = 0; c < 3; ++c) channels.push_back(static_cast<std::uint16_t>(picture->rgba[i + c] * 257));
+    }
+    // zlib inverts before and after.
+    const auto* const from = reinterpret_cast<const Bytef*>(channels.data());
+    const uLong inverted = ::crc32(0xffffffffUL, from, static_cast<uInt>(2 * channels.size()));
+    std::printf("0x%08lx\n", ~inverted & 0xffffffffUL);
+    return 0;
 }
 
 /// Until it is killed, or stdin ends.
@@ -139,6 +162,7 @@ int main(int count, char** arguments) {
     const std::string command = count > 1 ? arguments[1] : "";
     if (command == "hold" && count == 3) return hold(arguments[2]);
     if (command == "same" && (count == 4 || count == 5)) return compare(arguments[2], arguments[3], count == 5);
+    if (command == "checksum" && count == 3) return checksum(arguments[2]);
     if (command == "console" && count == 3) return console(arguments[2]);
     if (command == "sky" && count == 4) return show_sky(arguments[2], arguments[3]);
     if (command == "uniform" && count == 6)
@@ -146,6 +170,6 @@ int main(int count, char** arguments) {
     std::fprintf(
         stderr,
         "usage: vm_screen same PICTURE.png DUMP.ppm [half-turn] | uniform DUMP.ppm RED GREEN BLUE | hold /dev/dri/cardN | "
-        "sky SCREEN MODE | console /dev/ttyN\n");
+        "sky SCREEN MODE | console /dev/ttyN | checksum PICTURE.png\n");
     return 2;
 }

@@ -136,6 +136,19 @@ TEST_F(TourControllerTest, APauseHoldsTheEyeAgainstHandAndTourUntilPressedAgain)
     EXPECT_NEAR(x(), 20, 0.2);
 }
 
+TEST_F(TourControllerTest, APauseKeepsTheZoomAndAViewpointEndsIt) {
+    steering_.steers.plays();
+    ASSERT_TRUE(steering_.place(eye_));
+    const double usual = eye_.fov_y_rad;
+    eye_.fov_y_rad = 2 * std::atan(std::tan(usual / 2) / 4);
+    run(0.5, 0, &input::NavigationSample::pause);
+    EXPECT_NEAR(input::pose_of(steering_.motion()).fov_y_rad, eye_.fov_y_rad, 1e-12);
+    EXPECT_NEAR(steering_.motion().zoom, std::log(4), 1e-12) << "so it can be taken back";
+    run(0.1, 0, &input::NavigationSample::next_viewpoint);
+    EXPECT_EQ(steering_.motion().zoom, 0);
+    EXPECT_EQ(input::pose_of(steering_.motion()).fov_y_rad, usual);
+}
+
 TEST_F(TourControllerTest, AStopEndsTheTourAndLeavesTheVisitorStanding) {
     run(1, 0, &input::NavigationSample::tour);
     const double stood = x();

@@ -218,6 +218,7 @@ void add_walk(CLI::App& app, Context& context) {
         "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
         "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)\n\n"
         "In a window, W A S D or the arrow keys walk, and Shift runs. E and Q or Page Up and Down fly up and down.\n"
+        "Z looks closer, as through binoculars, and X back.\n"
         "Drag with the left mouse button to look around, or press the right one to capture the pointer. T follows the\n"
         "path, N goes to the next viewpoint, Home back to the start, and P pauses. F11 fills the screen. Escape releases\n"
         "a captured pointer, else it ends the walk with all figures and exit code 0, as closing the window does.\n"

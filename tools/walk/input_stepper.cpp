@@ -38,8 +38,9 @@ void InputStepper::step(std::int64_t now_ns) {
     const std::uint32_t jumps = walking_.jumps();
     input::NavigationSample sample = steering_.tick(lines, now_ns, led ? input::Ground{} : walking_.ground(steering_.flies()));
     if (walking_.jumps() != jumps) {  // put elsewhere: the way there is no motion
-        steering_.place(sample.pose);
+        steering_.place(sample.pose, true);
         sample.velocity_m_s = sample.angular_rad_s = dvec3(0.0);
+        sample.zoom_rate = 0;
     }
     if (keeper_ != nullptr) keeper_->set(steering_.safety().latched);
     tour_controller_.follow(sample, steering_, now_ns);

@@ -21,6 +21,7 @@ dvec3 turn_rate(const dquat& from, const dquat& to, double dt_s) {
 
 void stand_still(input::NavigationSample& s) {
     s.velocity_m_s = s.angular_rad_s = dvec3(0.0);
+    s.zoom_rate = 0;
     s.uncertainty_m = s.uncertainty_rad = 0;
 }
 
@@ -38,8 +39,8 @@ TourController::TourController(const Path& path) : path_(path) {
     last_ = start();
 }
 
-void TourController::put(const Pose& pose, input::NavigationSample& sample, input::Steering& steering) {
-    steering.place(pose);
+void TourController::put(const Pose& pose, input::NavigationSample& sample, input::Steering& steering, bool zooms) {
+    steering.place(pose, zooms);
     sample.pose = pose;
     stand_still(sample);
 }
@@ -86,7 +87,7 @@ void TourController::follow(input::NavigationSample& sample, input::Steering& st
     press_buttons(sample, steering);
     if (paused_ || !touring_) start_ns_ = -1;
     if (paused_)
-        put(last_, sample, steering);
+        put(last_, sample, steering, true);
     else if (touring_)
         tour(sample, steering, on_schedule() ? std::max(0.0, static_cast<double>(now_ns - start_ns_) * 1e-9) : tour_s_ + dt_s);
     last_ = sample.pose;

@@ -42,7 +42,9 @@ public:
 
 private:
     void press_buttons(input::NavigationSample& sample, input::Steering& steering) REQUIRES(steering.steers);
-    void put(const Pose& pose, input::NavigationSample& sample, input::Steering& steering) REQUIRES(steering.steers);
+    /// zooms: as of Steering::place().
+    void put(const Pose& pose, input::NavigationSample& sample, input::Steering& steering, bool zooms = false)
+        REQUIRES(steering.steers);
     void tour(input::NavigationSample& sample, input::Steering& steering, double to_s) REQUIRES(steering.steers);
 
     const Path& path_;

@@ -122,6 +122,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.prepare.occlusion = r.occlusion;
     options.prepare.gestalt = r.gestalt;
     options.prepare.acuity_rad = config::acuity_rad(r);
+    if (const auto seat = config::seat_of(r)) options.prepare.acuity_fov_y_rad = seat->fov_y_rad;
     options.selector = r.selector;
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);
