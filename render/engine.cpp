@@ -76,6 +76,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
 void Engine::Impl::use(const select::SelectorEntry& entry) {
     selector = &entry.make();
     by_budget = entry.goes_by == select::GoesBy::budget;
+    by_value = by_budget && entry.by_value && !(options.max_error_rad > 0);
     const bool full_depth = full_depth_always || entry.goes_by == select::GoesBy::nothing;
     if (preparer && full_depth == options.prepare.full_depth) return;
     options.prepare.full_depth = full_depth;
@@ -167,7 +168,7 @@ select::SelectInput Engine::Impl::input_of(const prepare::PreparedFrame& set, do
 
 double Engine::Impl::gain_of_one_more_ms(const select::SelectInput& input) const {
     const prepare::PreparedFrame& set = *input.prepared;
-    if (!by_budget || !(set.full_value > 0.0)) return 0;
+    if (!by_value || !(set.full_value > 0.0)) return 0;
     const double bought_us = cut.bought.cost_us + cut.bought.prepaid_us;
     const auto value_with = [&](double more_us) {
         select::SelectInput longer = input;

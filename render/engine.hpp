@@ -90,6 +90,7 @@ struct SubmitReport {
     rt::Guarantee guarantee = rt::Guarantee::none;  ///< of EngineOptions::max_error_rad: kept, or why not
     double value = 0;  ///< share of PreparedFrame::full_value that is drawn; 0: no prepared frame is; 1: nothing has value
     /// The share that the best cut would show more, had the budget been a millisecond longer. As estimated by the prepared frame.
+    /// 0 where the selector does not spend all of its time by value: by a guarantee, by a common accuracy, or without a budget.
     double one_more_ms = 0;
     std::uint32_t dropped_objects = 0;  ///< select::Dropped::count
     /// The picture that was shown stays, or full detail replaces it (RestPicture). slices, predicted_us and times are of what was

@@ -32,6 +32,7 @@ struct Engine::Impl {
     [[no_unique_address]] ThreadRole draws;                       ///< the thread that called bind(); prepare() runs on another
     bool full_depth_always = false;                               ///< requested by the options, for every selector
     bool by_budget = true;                                        ///< the selector: others buy whatever is offered
+    bool by_value = true;                                         ///< the selector spends all of its budget by value
     rt::TextureFilter best_filter = rt::TextureFilter::bilinear;  ///< that frames may have
     FilterCosts filter_costs;
     QualityDwell dwell GUARDED_BY(draws);

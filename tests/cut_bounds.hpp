@@ -77,6 +77,13 @@ inline double worst_error(const capture::Capture& of, const std::vector<select::
     return error;
 }
 
+/// Whether an item of this node errs as much as the worst, but for a part in 10^4.
+inline bool errs_most(const capture::Capture& of, std::uint32_t node, double worst_error_rad) {
+    return std::any_of(of.items.begin(), of.items.end(), [&](const select::CutItem& item) {
+        return item.node == node && worst_error(of, {item}) >= (1 - 1e-4) * worst_error_rad;
+    });
+}
+
 /// The same of the items that a pose sees.
 inline double worst_seen_error(const capture::Capture& of, const model::Model& model, const Pose& pose) {
     const model::Frustum frustum = model::make_frustum(pose, of.prepared.viewport, model::far_corners_m(model.nodes[0].box));

@@ -24,6 +24,7 @@ struct SelectorEntry {
     const Selector& (*make)() = nullptr;
     bool guarantees = false;    ///< buys SelectInput::max_error_rad first; others ignore it
     bool follows_time = false;  ///< goes by how long the frame before took: single places have none
+    bool by_value = true;       ///< of those that go by a budget: more time goes to what shows most; else to a common accuracy
 };
 
 constexpr std::string_view usual_selector = "threshold";

@@ -64,6 +64,10 @@ TEST(AccuracyPage, AndItsFiles) {
         EXPECT_EQ(svg.find("inf"), std::string::npos);
     }
     EXPECT_NE(accuracy_svg(run, false), accuracy_svg(run, true));
+    const std::string worst = *read_text(in("a/accuracy-worst.svg"));
+    for (const char* const shown : {"Worst accuracy", "PSNR", "FLIP", "<title>two-stage"})
+        EXPECT_NE(worst.find(shown), std::string::npos) << shown;
+    EXPECT_TRUE(read_text(in("a/accuracy-worst-dark.svg")).ok());
 }
 
 AccuracyPoint point(double ms, double accuracy, double psnr_db) {

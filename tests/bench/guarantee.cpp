@@ -62,6 +62,9 @@ Result<void> judge_capture(const char* file, const model::Model& model, const Le
     const double reached = 1 / test::worst_seen_error(*of, model, pose);
     if (std::abs(row.reached - reached) > 1e-4 * reached)
         figures.refute(fmt::format("{}: the record says {}, the cut reached {}", file, row.reached, reached));
+    const auto node = static_cast<std::uint32_t>(std::strtoul(row.node.c_str(), nullptr, 10));
+    if (!row.node.empty() && !test::errs_most(*of, node, 1 / reached))
+        figures.refute(fmt::format("{}: node {} does not err most", file, row.node));
     if (row.guarantee != "over_budget") return {};
     // By `near` of what fits, since costs are compared node by node, and a frame takes the larger of two sums.
     constexpr double near = 0.98;

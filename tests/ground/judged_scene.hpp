@@ -137,9 +137,12 @@ inline Walked visitor(const JudgedScene& of, const dvec3& start, std::uint64_t s
                          z = walker.feet().z + reach * std::sin(angle) + off.y;
             for (const double y : of.judge->floors_at(x, z, 1e-3)) off_floor = std::min(off_floor, std::abs(y - walker.feet().y));
         }
-        // Else its sides lie on something, as on rocks beside the foot.
-        const bool lies =
-            off_floor > 0.002 && of.judge->distance(body.low, body.length, body.radius + 0.003) <= body.radius + 0.003;
+        // Else its sides lie on something, as on rocks beside the foot: 3 mm thicker it touches that, and a centimetre lower more
+        // so. An upright wall is not nearer then.
+        const auto overlap = [&](double lower_m) {
+            return of.judge->penetration(body.low - dvec3(0, lower_m, 0), body.length, body.radius + 0.003);
+        };
+        const bool lies = off_floor > 0.002 && overlap(0.01) > overlap(0) + 5e-4;
         walked.uncarried += off_floor > 0.002 && !lies ? 1 : 0;
         judged_at = eye;
     }
@@ -151,16 +154,18 @@ inline Walked visitor(const JudgedScene& of, const dvec3& start, std::uint64_t s
 
 /// Random level, upright and slanted moves of capsules near `places`, against the judge's triangles. A contact agrees if it lies
 /// between those of capsules half a millimetre thicker and thinner, or a millimetre from it; so does a deepest overlap.
+/// Those that begin free count. A tenth of them must touch something.
 inline std::size_t wrong_moves(const JudgedScene& of, const std::vector<dvec3>& places, std::size_t count, std::uint64_t seed) {
     Random random(seed);
-    std::size_t wrong = 0, touched = 0;
-    for (std::size_t i = 0; i < count; ++i) {
+    std::size_t wrong = 0, touched = 0, free = 0;
+    for (std::size_t i = 0; free < count && i < 20 * count; ++i) {
         const dvec3 at = places[random.below(static_cast<std::uint32_t>(places.size()))];
         const model::Capsule body{at + any_in(random, dvec3(-2, -1, -2), dvec3(2, 1, 2)), random.range(0, 1.2),
                                   random.range(0.1, 0.4)};
         const dvec3 move = any_in(random, dvec3(-1.5), dvec3(1.5)) * (random.below(3) == 0 ? dvec3(0, 1, 0) : dvec3(1));
         const double length = glm::length(move);
-        if (of.judge->penetration(body.low, body.length, body.radius + 1e-3) > 0) continue;  // begins free
+        if (of.judge->penetration(body.low, body.length, body.radius + 1e-3) > 0) continue;
+        ++free;
         Box box{body.low - body.radius, body.low + body.radius};
         box.max.y += body.length;
         box.grow(Box{box.min + move, box.max + move});
@@ -181,7 +186,9 @@ inline std::size_t wrong_moves(const JudgedScene& of, const std::vector<dvec3>& 
             std::printf("  move %zu: contact after %.5f m, judged %.5f to %.5f m; overlap %.5f m\n", i, end * length,
                         std::min(thick, 1.0) * length, std::min(thin, 1.0) * length, deepest);
     }
-    std::printf("  %zu moves, %zu touched something, %zu wrong\n", count, touched, wrong);
+    std::printf("  %zu moves, %zu touched something, %zu wrong\n", free, touched, wrong);
+    EXPECT_EQ(free, count);
+    EXPECT_GT(10 * touched, free);
     return wrong;
 }
 

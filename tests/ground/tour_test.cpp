@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "tests/ground/judged_scene.hpp"
 
@@ -108,13 +110,21 @@ TEST(Tour, OfNothingAndOfTinyThingsIsAPathToo) {
 }
 
 TEST(Nightly, ToursOfFilesTouchNothing) {
-    expect_sound(generated("town"), tour_of(generated("town")), "town");
-    for (const char* file : {"interior/hospital/hospital_three_floors.glb", "outdoor/candela-city/candela_city.glb",
-                             "interior/ravenbridge-mansion/ravenbridge_mansion.glb", "outdoor/cocoa-temple/cocoa_temple.glb",
-                             "outdoor/flightgear-keflavik/keflavik.glb"}) {
+    const JudgedScene town = generated("town");
+    const bake::Tour through = tour_of(town);
+    EXPECT_EQ(through.kind, "through its free space");
+    expect_sound(town, through, "town");
+    constexpr std::string_view inside = "through its free space", above = "above its ground";
+    for (const auto& [file, kind] : {std::pair{"interior/hospital/hospital_three_floors.glb", inside},
+                                     {"outdoor/candela-city/candela_city.glb", inside},
+                                     {"interior/ravenbridge-mansion/ravenbridge_mansion.glb", inside},
+                                     {"outdoor/cocoa-temple/cocoa_temple.glb", inside},
+                                     {"outdoor/flightgear-keflavik/keflavik.glb", above}}) {
         const auto of = imported(file);
         if (!of) GTEST_SKIP() << "SUREFOOT_DATA is not set, or lacks " << file;
-        expect_sound(*of, tour_of(*of), file);
+        const bake::Tour tour = tour_of(*of);
+        EXPECT_EQ(tour.kind, kind) << file;
+        expect_sound(*of, tour, file);
     }
 }
 

@@ -91,6 +91,8 @@ TEST(GuaranteeWalk, IsReachedByCapturedCutsAndBrokenOnlyWhereNoCutFits) {
             ASSERT_EQ(read->hash, record.cut_hash);
             const double seen = test::worst_seen_error(*read, *model, pose);
             ASSERT_NEAR(double{record.reached_accuracy} * seen, 1, 1e-5) << "frame " << frame;
+            EXPECT_TRUE(test::errs_most(*read, record.binding_node, seen))
+                << "frame " << frame << " names node " << record.binding_node;
             if (record.guarantee == Guarantee::kept) {
                 ++kept;
                 EXPECT_LE(seen, 1 / accuracy) << "frame " << frame;

@@ -63,6 +63,7 @@ TEST(MarginalValue, SelectorsWithoutGroupsLeaveObjectsOut) {
     EXPECT_GT(means_at(4, "greedy", 30, 10).dropped, 0U);
     EXPECT_GT(means_at(4, "reactive", 30, 10).dropped, 0U);
     EXPECT_EQ(means_at(4, "static", 30, 10).one_more_ms, 0) << "it has no budget";
+    EXPECT_EQ(means_at(7, "curve-budget", 30, 10).one_more_ms, 0) << "its time goes to accuracy";
 }
 
 }  // namespace

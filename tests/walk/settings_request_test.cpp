@@ -47,6 +47,15 @@ TEST(SettingsRequest, EverySettingArrives) {
         EXPECT_EQ(config::value_text(request, entry), config::value_text(c.values, entry)) << entry.key;
 }
 
+TEST(SettingsRequest, SelectorsThatLeaveObjectsOutAreRefusedWithTheReason) {
+    for (const select::SelectorEntry& entry : select::dropping_selectors()) {
+        config::Configuration c(settings_schema());
+        const auto loaded = config::load_text(c, "selector = \"" + std::string(entry.name) + "\"\n", "s.toml");
+        ASSERT_FALSE(loaded.ok()) << entry.name;
+        EXPECT_NE(loaded.error().text().find("leaves visible objects out"), std::string::npos) << loaded.error().text();
+    }
+}
+
 TEST(SettingsRequest, FilesOfTheCommandLineWinAndThoseOfAFileAreRelativeToIt) {
     config::Configuration c(settings_schema());
     ASSERT_TRUE(config::load_text(c, "model = \"m.walk\"\npath = \"p.csv\"\ninput = \"devices\"\n", "/etc/surefoot/s.toml").ok());

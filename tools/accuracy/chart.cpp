@@ -1,5 +1,5 @@
-// What accuracy costs in time, a line a selector: accuracy, SNR and SSIM against frame time, the chart in the README; and the
-// worst place against the slowest frames, PSNR and FLIP.
+// What accuracy costs in time, a line a selector: accuracy, SNR and SSIM against frame time; and the worst place against the
+// slowest frames, PSNR and FLIP, the chart in the README.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -229,5 +229,6 @@ std::string worst_case_chart(const AccuracyRun& run) {
 }
 
 std::string accuracy_svg(const AccuracyRun& run, bool dark) { return report::stand_alone(accuracy_chart(run), dark); }
+std::string worst_case_svg(const AccuracyRun& run, bool dark) { return report::stand_alone(worst_case_chart(run), dark); }
 
 }  // namespace surefoot::accuracy

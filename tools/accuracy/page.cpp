@@ -130,7 +130,8 @@ std::string body_of(const AccuracyRun& run) {
                      "<footer><p>{}</p><p>Beside this page: <a href=\"accuracy.csv\">accuracy.csv</a>, <a "
                      "href=\"accuracy.json\">accuracy.json</a>, "
                      "<a href=\"accuracy.svg\">accuracy.svg</a>, <a "
-                     "href=\"accuracy-dark.svg\">accuracy-dark.svg</a>.</p></footer>\n",
+                     "href=\"accuracy-dark.svg\">accuracy-dark.svg</a>, <a href=\"accuracy-worst.svg\">accuracy-worst.svg</a>, <a "
+                     "href=\"accuracy-worst-dark.svg\">accuracy-worst-dark.svg</a>.</p></footer>\n",
                      report::escaped(run.machine));
 }
 
@@ -221,17 +222,20 @@ std::string accuracy_json(const AccuracyRun& run) {
 }
 
 Result<void> probe_accuracy_page(const std::string& dir) {
-    return FileSet::probe(dir, {"accuracy.csv", "accuracy.json", "accuracy.svg", "accuracy-dark.svg", "index.html"});
+    return FileSet::probe(dir, {"accuracy.csv", "accuracy.json", "accuracy.svg", "accuracy-dark.svg", "accuracy-worst.svg",
+                                "accuracy-worst-dark.svg", "index.html"});
 }
 
 Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run) {
     auto written = FileSet::create(dir);
     if (!written) return written.error();
-    const std::array<std::pair<std::string_view, std::string>, 5> files = {{
+    const std::array<std::pair<std::string_view, std::string>, 7> files = {{
         {"accuracy.csv", accuracy_csv(run)},
         {"accuracy.json", accuracy_json(run)},
         {"accuracy.svg", accuracy_svg(run, false)},
         {"accuracy-dark.svg", accuracy_svg(run, true)},
+        {"accuracy-worst.svg", worst_case_svg(run, false)},
+        {"accuracy-worst-dark.svg", worst_case_svg(run, true)},
         {"index.html", report::page("Surefoot: what accuracy costs in time", body_of(run))},
     }};
     for (const auto& [name, text] : files)

@@ -52,6 +52,7 @@ struct AccuracyRun {
 };
 /// The chart as a file of its own.
 std::string accuracy_svg(const AccuracyRun& run, bool dark);
+std::string worst_case_svg(const AccuracyRun& run, bool dark);
 std::string accuracy_csv(const AccuracyRun& run);
 std::string accuracy_json(const AccuracyRun& run);
 /// Whether the page could be written to `dir` now. Call it before the sweep.

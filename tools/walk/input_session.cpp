@@ -86,8 +86,8 @@ void InputSession::poll(const Progress& progress, std::vector<std::string>& note
     if (freed_told_ || !walking_ || !walking_->shown_freed()) return;
     freed_told_ = true;
     notify(progress, notes,
-           "The visitor was inside something solid and was put to the nearest free place. This is told once; `--json` counts it "
-           "as `freed`.");
+           "The visitor was inside something solid, or could get no further, and was put to a free place. This is told once; "
+           "`--json` counts it as `freed`.");
 }
 
 rt::InputState InputSession::now() const {
