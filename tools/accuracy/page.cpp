@@ -126,13 +126,14 @@ std::string body_of(const AccuracyRun& run) {
         "relative to the distance: 1 / angle. <b>Error</b> is absolute: the largest geometric error in metres that is drawn, the "
         "mean over the places. <b>Value</b>: share of what full detail shows, as the selectors count it.</p>\n";
     out += table_of(run);
-    return out + fmt::format(
-                     "<footer><p>{}</p><p>Beside this page: <a href=\"accuracy.csv\">accuracy.csv</a>, <a "
-                     "href=\"accuracy.json\">accuracy.json</a>, "
-                     "<a href=\"accuracy.svg\">accuracy.svg</a>, <a "
-                     "href=\"accuracy-dark.svg\">accuracy-dark.svg</a>, <a href=\"accuracy-worst.svg\">accuracy-worst.svg</a>, <a "
-                     "href=\"accuracy-worst-dark.svg\">accuracy-worst-dark.svg</a>.</p></footer>\n",
-                     report::escaped(run.machine));
+    return out +
+           fmt::format(
+               "<footer><p>{}</p><p>Beside this page: <a href=\"accuracy.csv\">accuracy.csv</a>, <a "
+               "href=\"accuracy.json\">accuracy.json</a>, "
+               "<a href=\"accuracy.svg\">accuracy.svg</a>, <a "
+               "href=\"accuracy-dark.svg\">accuracy-dark.svg</a>, <a href=\"accuracy-worst.svg\">accuracy-worst.svg</a>, <a "
+               "href=\"accuracy-worst-dark.svg\">accuracy-worst-dark.svg</a>.</p></footer>\n",
+               report::escaped(run.machine));
 }
 
 }  // namespace

@@ -121,7 +121,8 @@ void add_accuracy(CLI::App& app, Context& context) {
     accuracy::AccuracyRequest& r = a->request;
     c->add_option("model", r.model_file, "The .walk model")->required();
     c->add_option("--path", r.path_file, "CSV file of the path along which poses are taken (else MODEL.path.csv, else a tour)");
-    c->add_option("-o,--out", a->out, "Output folder for index.html, accuracy.svg, accuracy-worst.svg and accuracy.csv")->capture_default_str();
+    c->add_option("-o,--out", a->out, "Output folder for index.html, accuracy.svg, accuracy-worst.svg and accuracy.csv")
+        ->capture_default_str();
     c->add_option("--size", a->settings->size, "Size of the picture in pixels [1280x720]");
     add_setting(c, a->settings, "--shift-x", "shift_x");
     add_setting(c, a->settings, "--shift-y", "shift_y");
