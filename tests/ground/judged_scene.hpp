@@ -142,7 +142,7 @@ inline Walked visitor(const JudgedScene& of, const dvec3& start, std::uint64_t s
         const auto overlap = [&](double lower_m) {
             return of.judge->penetration(body.low - dvec3(0, lower_m, 0), body.length, body.radius + 0.003);
         };
-        const bool lies = off_floor > 0.002 && overlap(0.01) > overlap(0) + 5e-4;
+        const bool lies = off_floor > 0.002 && overlap(0.01) > overlap(0) + 1e-5;
         walked.uncarried += off_floor > 0.002 && !lies ? 1 : 0;
         judged_at = eye;
     }
@@ -174,7 +174,7 @@ inline std::size_t wrong_moves(const JudgedScene& of, const std::vector<dvec3>& 
             share = std::min(share, model::first_contact(body, move, t).share);
         });
         const double thick = of.judge->first_contact(body.low, body.length, body.radius + 5e-4, move);
-        const double thin = of.judge->first_contact(body.low, body.length, body.radius - 5e-4, move);
+        const double thin = thick > 1 ? thick : of.judge->first_contact(body.low, body.length, body.radius - 5e-4, move);
         touched += share <= 1 ? 1 : 0;
         const double end = std::min(share, 1.0), slack = 1e-3 / length;
         const bool contact_agrees = end >= std::min(thick, 1.0) - slack && end <= std::min(thin, 1.0) + slack;

@@ -130,6 +130,8 @@ TEST(Nightly, StairsOfTheHospitalAreClimbedAsFarAsABodyFits) {
     const Flights flights = climb_all(*of, "hospital");
     EXPECT_GE(flights.found, 59U);
     EXPECT_GE(flights.open, 2U) << "slabs close the others above";
+    EXPECT_EQ(flights.of_20_cm, flights.found);
+    EXPECT_GE(flights.highest_m, 2.7);
 }
 
 }  // namespace surefoot::test
