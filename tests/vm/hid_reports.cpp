@@ -32,7 +32,7 @@ Result<input::Recording> recorded(const Guest& guest, const std::vector<Report>&
     if (tool == nullptr) return Error{guest.tool, "cannot be started", {}};
     std::array<char, 512> line{};
     while (std::fgets(line.data(), static_cast<int>(line.size()), tool) != nullptr)
-        if (std::string_view(line.data()).find("recording ") != std::string_view::npos) break;
+        if (std::string_view(line.data()).find("are recorded to") != std::string_view::npos) break;
     took_all = true;
     for (const Report& r : reports) {
         took_all = device.send(r) && took_all;
