@@ -149,7 +149,8 @@ FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, Fr
             bare_frame(clock, burn.mean_ns(), account, record);
         } else {
             walk_frame(clock, stages, account, record);
-            burn.add(account.core_cpu_ns());
+            // A rasteriser that moved counts its time on other cores too: no core is busy for longer than the frame took.
+            burn.add(std::min(account.core_cpu_ns(), record.complete_ns - record.woken_ns));
         }
         if (options.shows) {
             const Shown shown = show(options, grid, clock, stages, account, s.lead_ns, record);
