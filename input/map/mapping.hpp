@@ -37,8 +37,8 @@ constexpr std::size_t action_count = 15;
 std::span<const std::string_view> action_names();
 std::string_view name_of(Action action);
 [[nodiscard]] constexpr bool has_size(Action a) { return a >= Action::forward && a <= Action::zoom; }
-/// Whether the action moves the walker; the neutral interlock watches these, not speed and zoom: a throttle keeps
-/// its place.
+/// Whether the action moves the walker. The neutral interlock watches these. Speed and zoom it does not: a throttle keeps its
+/// place.
 [[nodiscard]] constexpr bool moves(Action a) { return a >= Action::forward && a <= Action::look; }
 
 /// A control, by its name ("x"), else by usage page and usage ("0x01:0x30"). If not empty, `collection` must be a part of the

@@ -254,14 +254,11 @@ const Selector& make_curve_accuracy() {
 
 }  // namespace
 
-const SelectorEntry curve_budget_entry{"curve-budget",
-                                       "the greatest accuracy that all objects can share, within the budget",
-                                       GoesBy::budget,
-                                       true,
-                                       make_curve_budget,
-                                       true,
-                                       false,
-                                       false};
+const SelectorEntry curve_budget_entry{.name = "curve-budget",
+                                       .help = "the greatest accuracy that all objects can share, within the budget",
+                                       .make = make_curve_budget,
+                                       .guarantees = true,
+                                       .by_value = false};
 const SelectorEntry curve_accuracy_entry{"curve-accuracy", "the cheapest cut within one error for all objects; no budget",
                                          GoesBy::threshold, false, make_curve_accuracy};
 

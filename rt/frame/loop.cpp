@@ -149,7 +149,7 @@ FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, Fr
             bare_frame(clock, burn.mean_ns(), account, record);
         } else {
             walk_frame(clock, stages, account, record);
-            // A rasteriser that moved counts its time on other cores too: no core is busy for longer than the frame took.
+            // The clocks of its threads together may count more than the frame lasted. No core is busy for longer.
             burn.add(std::min(account.core_cpu_ns(), record.complete_ns - record.woken_ns));
         }
         if (options.shows) {

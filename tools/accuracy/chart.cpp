@@ -1,5 +1,5 @@
-// What accuracy costs in time, a line a selector: accuracy, SNR and SSIM against frame time; and the worst place against the
-// slowest frames, PSNR and FLIP, the chart in the README.
+// What accuracy costs in time, a line a selector: accuracy, SNR and SSIM against frame time, the chart in the README; and the
+// worst place against the slowest frames, PSNR and FLIP.
 #include <fmt/format.h>
 
 #include <algorithm>

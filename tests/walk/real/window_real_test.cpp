@@ -6,7 +6,9 @@
 #include <cmath>
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -143,14 +145,37 @@ void steer(test::XVisitor& visitor, FramesSoFar& frames, Times& times, Pictures&
     visitor.tap(symbol_escape);
 }
 
-TEST(WindowWalk, KeysAndMouseLeadOffThePathAndEscapeEndsTheWalk) {
+/// Starts an X server, and lets a visitor come.
+class WindowThread : public ::testing::Test {
+protected:
+    void SetUp() override {
+        auto server = test::XServer::start("320x240x24");
+        if (!server) GTEST_SKIP() << server.error().text();
+        server_ = std::move(*server);
+        auto visitor = test::XVisitor::come();
+        if (visitor)
+            visitor_ = std::move(*visitor);
+        else
+            no_visitor_ = visitor.error().text();
+    }
+
+    std::unique_ptr<test::XServer> server_;
+    std::unique_ptr<test::XVisitor> visitor_;  ///< null: none could come, for the reason below
+    std::string no_visitor_;
+};
+
+class WindowWalk : public WindowThread {
+protected:
+    void SetUp() override {
 #ifdef SUREFOOT_WATCHES_THREADS
-    GTEST_SKIP() << "drivers cannot be opened under the thread sanitizer";
+        GTEST_SKIP() << "drivers cannot be opened under the thread sanitizer";
 #endif
-    auto server = test::XServer::start("320x240x24");
-    if (!server) GTEST_SKIP() << server.error().text();
-    auto visitor = test::XVisitor::come();
-    if (!visitor) GTEST_SKIP() << visitor.error().text();
+        WindowThread::SetUp();
+    }
+};
+
+TEST_F(WindowWalk, KeysAndMouseLeadOffThePathAndEscapeEndsTheWalk) {
+    if (visitor_ == nullptr) GTEST_SKIP() << no_visitor_;
     walk::WalkRequest request = test::Forest::get().virtual_request(0);
     request.clock = rt::ClockKind::real;
     request.backend = walk::window_input;
@@ -168,7 +193,7 @@ TEST(WindowWalk, KeysAndMouseLeadOffThePathAndEscapeEndsTheWalk) {
         first_ns.wait(0);
         rt::RealClock clock;
         clock.sleep_until_ns(first_ns.load());
-        if (first_ns.load() > 1) steer(**visitor, frames, times, pictures);
+        if (first_ns.load() > 1) steer(*visitor_, frames, times, pictures);
     });
     walk::WalkObserver observer;
     observer.on_record = [&](const rt::FrameRecord& record) { frames.add(record); };
@@ -253,23 +278,17 @@ std::shared_ptr<const Path> second_of_path() {
     return std::make_shared<const Path>(std::move(cut));
 }
 
-TEST(WindowWalk, AnyKeyProlongsItAPauseToo) {
-#ifdef SUREFOOT_WATCHES_THREADS
-    GTEST_SKIP() << "drivers cannot be opened under the thread sanitizer";
-#endif
-    auto server = test::XServer::start("320x240x24");
-    if (!server) GTEST_SKIP() << server.error().text();
-    auto visitor = test::XVisitor::come();
-    if (!visitor) GTEST_SKIP() << visitor.error().text();
+TEST_F(WindowWalk, AnyKeyProlongsItAPauseToo) {
+    if (visitor_ == nullptr) GTEST_SKIP() << no_visitor_;
     for (const unsigned long symbol : {0UL, 0x70UL, 0x78UL}) {  // none, P, and X, which has no action
         walk::WalkRequest request = test::Forest::get().virtual_request(0);
         request.given_path = second_of_path();
         request.may_leave = request.may_steer = true;
         const auto outcome = walk_in_window(request, [&](FramesSoFar& frames) {
             if (symbol == 0) return;
-            (*visitor)->tap(symbol);
+            visitor_->tap(symbol);
             (void)frames.wait_for_frames(75);  // its end passes
-            (*visitor)->tap(symbol_escape);
+            visitor_->tap(symbol_escape);
         });
         ASSERT_TRUE(outcome.ok()) << outcome.error().text();
         EXPECT_EQ(outcome->left, symbol != 0) << symbol;
@@ -285,24 +304,18 @@ TEST(WindowWalk, AnyKeyProlongsItAPauseToo) {
     }
 }
 
-TEST(WindowWalk, KeysOfAWindowThatMayNotSteerDoNothing) {
-#ifdef SUREFOOT_WATCHES_THREADS
-    GTEST_SKIP() << "drivers cannot be opened under the thread sanitizer";
-#endif
-    auto server = test::XServer::start("320x240x24");
-    if (!server) GTEST_SKIP() << server.error().text();
-    auto visitor = test::XVisitor::come();
-    if (!visitor) GTEST_SKIP() << visitor.error().text();
+TEST_F(WindowWalk, KeysOfAWindowThatMayNotSteerDoNothing) {
+    if (visitor_ == nullptr) GTEST_SKIP() << no_visitor_;
     walk::WalkRequest request = test::Forest::get().virtual_request(0);
     request.given_path = second_of_path();
     test::ScreenPicture screen;
     const auto outcome = walk_in_window(request, [&](FramesSoFar& frames) {
-        (*visitor)->tap('w');
-        (*visitor)->tap(symbol_f11);
-        (*visitor)->tap(symbol_escape);
-        (*visitor)->close((*visitor)->find_window());
+        visitor_->tap('w');
+        visitor_->tap(symbol_f11);
+        visitor_->tap(symbol_escape);
+        visitor_->close(visitor_->find_window());
         EXPECT_TRUE(frames.wait_for_frames(20));
-        screen = (*visitor)->look_at_screen();
+        screen = visitor_->look_at_screen();
     });
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
     EXPECT_FALSE(outcome->left);
@@ -312,23 +325,17 @@ TEST(WindowWalk, KeysOfAWindowThatMayNotSteerDoNothing) {
     EXPECT_EQ(screen.at(200, 200), test::ScreenPixel{}) << "it keeps its size";
 }
 
-TEST(WindowWalk, ItsFramesAndItsInputNeedNoMemory) {
+TEST_F(WindowWalk, ItsFramesAndItsInputNeedNoMemory) {
     if (!rt::guard_active()) GTEST_SKIP() << "allocations are not counted in this build";
-#ifdef SUREFOOT_WATCHES_THREADS
-    GTEST_SKIP() << "drivers cannot be opened under the thread sanitizer";
-#endif
-    auto server = test::XServer::start("320x240x24");
-    if (!server) GTEST_SKIP() << server.error().text();
-    auto visitor = test::XVisitor::come();
-    if (!visitor) GTEST_SKIP() << visitor.error().text();
+    if (visitor_ == nullptr) GTEST_SKIP() << no_visitor_;
     walk::WalkRequest request = test::Forest::get().virtual_request(0);
     request.given_path = second_of_path();
     request.may_leave = request.may_steer = true;
     const auto outcome = walk_in_window(request, [&](FramesSoFar& frames) {
-        (*visitor)->tap('w');
-        (*visitor)->tap(symbol_f11);
+        visitor_->tap('w');
+        visitor_->tap(symbol_f11);
         EXPECT_TRUE(frames.wait_for_frames(40));
-        (*visitor)->tap(symbol_escape);
+        visitor_->tap(symbol_escape);
     });
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
     EXPECT_GE(outcome->summary.input.reports, 2U);
@@ -336,12 +343,7 @@ TEST(WindowWalk, ItsFramesAndItsInputNeedNoMemory) {
     EXPECT_EQ(outcome->summary.input.guard_violations, 0U);
 }
 
-TEST(WindowWalk, AProlongedWalkEndsWithAMessageWhenNoMoreIsKept) {
-#ifdef SUREFOOT_WATCHES_THREADS
-    GTEST_SKIP() << "drivers cannot be opened under the thread sanitizer";
-#endif
-    auto server = test::XServer::start("320x240x24");
-    if (!server) GTEST_SKIP() << server.error().text();
+TEST_F(WindowWalk, AProlongedWalkEndsWithAMessageWhenNoMoreIsKept) {
     walk::WalkRequest request = test::Forest::get().virtual_request(0);
     request.input_file = walk::window_input;
     request.may_leave = request.may_steer = true;
@@ -356,30 +358,24 @@ TEST(WindowWalk, AProlongedWalkEndsWithAMessageWhenNoMoreIsKept) {
     EXPECT_EQ(outcome->notes.back().find("The walk ended after 70 frames: no more are kept."), 0U) << outcome->notes.back();
 }
 
-TEST(WindowThread, WhatTheServerRefusesIsCountedAndNamed) {
-    auto server = test::XServer::start("320x240x24");
-    if (!server) GTEST_SKIP() << server.error().text();
-    auto visitor = test::XVisitor::come();
-    if (!visitor) GTEST_SKIP() << visitor.error().text();
+TEST_F(WindowThread, WhatTheServerRefusesIsCountedAndNamed) {
+    if (visitor_ == nullptr) GTEST_SKIP() << no_visitor_;
     auto window = gl::WindowEvents::open({64, 64}, "test", false);
     ASSERT_TRUE(window.ok()) << window.error().text();
     walk::WindowThread thread(*window, {}, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-window"});
-    (*visitor)->give_focus((*window)->id() + 999);  // there is no such window
+    visitor_->give_focus((*window)->id() + 999);  // there is no such window
     thread.stop();
     EXPECT_EQ(thread.refused(), "The X server refused requests of the window: 1. The last: BadWindow (error 3) of request 42.");
 }
 
-TEST(WindowThread, ClosingTheWindowLeavesUnlessNobodyMay) {
-    auto server = test::XServer::start("320x240x24");
-    if (!server) GTEST_SKIP() << server.error().text();
-    auto visitor = test::XVisitor::come();
-    if (!visitor) GTEST_SKIP() << visitor.error().text();
+TEST_F(WindowThread, ClosingTheWindowLeavesUnlessNobodyMay) {
+    if (visitor_ == nullptr) GTEST_SKIP() << no_visitor_;
     for (const bool may_leave : {true, false}) {
         auto window = gl::WindowEvents::open({64, 64}, "test", false);
         ASSERT_TRUE(window.ok()) << window.error().text();
         walk::WindowThread thread(*window, {.feed = nullptr, .may_leave = may_leave, .stop_keys = 0},
                                   {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-window"});
-        (*visitor)->close((*window)->id());
+        visitor_->close((*window)->id());
         for (int i = 0; i < 100 && !thread.left().load() && (may_leave || i < 10); ++i) wait_ms(10);
         EXPECT_EQ(thread.left().load(), may_leave);
         thread.stop();
