@@ -52,7 +52,7 @@ struct Settings {
     rt::ClockKind clock = rt::ClockKind::real;
     int workers = 0;      ///< 0: one a core beside the frame thread's
     int rasterisers = 0;  ///< 0: one a core
-    bool fifo = true, strict = false, in_frame_check = true, occlusion = true, control = false;
+    bool fifo = true, strict = false, in_frame_check = true, occlusion = true, sunlight = true, control = false;
     int frame_core = -1;         ///< -1: chosen
     double rest_after_ms = 500;  ///< 0: never
     double slice_us = 1000;

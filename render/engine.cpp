@@ -76,6 +76,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
 void Engine::Impl::use(const select::SelectorEntry& entry) {
     selector = &entry.make();
     by_budget = entry.goes_by == select::GoesBy::budget;
+    keeps_target = entry.keeps_target;
     by_value = by_budget && entry.by_value && !(options.max_error_rad > 0);
     const bool full_depth = full_depth_always || entry.goes_by == select::GoesBy::nothing;
     if (preparer && full_depth == options.prepare.full_depth) return;
@@ -267,6 +268,9 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
     e.one_more_ms = e.gain_of_one_more_ms(input);
+    e.promised_rad = e.options.max_error_rad > 0.0              ? e.options.max_error_rad
+                     : e.keeps_target && target_error_rad > 0.0 ? target_error_rad
+                                                                : 0.0;
     e.last_frame_us = 0;
     e.offers_used = true;
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
@@ -277,6 +281,17 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
 const select::SelectState& Engine::selection_memory() const {
     impl_->draws.plays();
     return impl_->state;
+}
+
+void Engine::show_switchable(bool shown) {
+    Impl& e = *impl_;
+    e.draws.plays();
+    if (shown == e.switchable_shown) return;
+    e.device->draws.plays();
+    e.switchable_shown = shown;
+    e.device->show_switchable(shown);
+    e.watch.forget();
+    e.rest_picture.leave();
 }
 
 void Engine::select_last() {

@@ -84,13 +84,15 @@ struct SubmitReport {
     float resolution = 1;                               ///< that was drawn: a step of model::resolution_steps
     std::uint32_t samples = 1;                          ///< of a pixel, that were drawn
     rt::TextureFilter filter = rt::TextureFilter::bilinear;
-    float worst_error_rad = 0;                      ///< of the drawn items, stand-ins included
-    float worst_weighted_rad = 0;                   ///< the same of errors times importance
-    model::Index worst_node = model::none;          ///< the node of worst_weighted_rad; none: all is exact
-    rt::Guarantee guarantee = rt::Guarantee::none;  ///< of EngineOptions::max_error_rad: kept, or why not
+    float worst_error_rad = 0;              ///< of the drawn items, stand-ins included
+    float worst_weighted_rad = 0;           ///< the same of errors times importance
+    model::Index worst_node = model::none;  ///< the node of worst_weighted_rad; none: all is exact
+    /// EngineOptions::max_error_rad, or the target error of a selector that promises it; 0: nothing is promised.
+    double promised_rad = 0;
+    rt::Guarantee guarantee = rt::Guarantee::none;  ///< of promised_rad: kept, or why not
     double value = 0;  ///< share of PreparedFrame::full_value that is drawn; 0: no prepared frame is; 1: nothing has value
     /// The share that the best cut would show more, had the budget been a millisecond longer. As estimated by the prepared frame.
-    /// 0 where the selector does not spend all of its time by value: by a guarantee, by a common accuracy, or without a budget.
+    /// 0 where the selector does not spend all of its time by value: all but `threshold`, and with a guarantee.
     double one_more_ms = 0;
     std::uint32_t dropped_objects = 0;  ///< select::Dropped::count
     /// The picture that was shown stays, or full detail replaces it (RestPicture). slices, predicted_us and times are of what was
@@ -125,6 +127,10 @@ public:
 
     /// Changes the selector, from the next prepare() on. No prepare() may be running, since `flat` changes its depth. Allocates.
     Result<void> set_selector(std::string_view name);
+
+    /// Whether the next pictures have the device's switchable effects (gl::DeviceOptions). Between pictures, on the thread that
+    /// draws. A change lets a picture at rest begin anew. Costs are predicted as with them.
+    void show_switchable(bool shown);
 
     /// Offers something that the next select() may buy beside forms. False: refused, and counted in its cut.
     bool offer(const select::Item& item);

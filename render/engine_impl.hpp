@@ -32,6 +32,7 @@ struct Engine::Impl {
     [[no_unique_address]] ThreadRole draws;                       ///< the thread that called bind(); prepare() runs on another
     bool full_depth_always = false;                               ///< requested by the options, for every selector
     bool by_budget = true;                                        ///< the selector: others buy whatever is offered
+    bool keeps_target = false;                                    ///< the selector promises its target error
     bool by_value = true;                                         ///< the selector spends all of its budget by value
     rt::TextureFilter best_filter = rt::TextureFilter::bilinear;  ///< that frames may have
     FilterCosts filter_costs;
@@ -58,6 +59,8 @@ struct Engine::Impl {
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
+    bool switchable_shown GUARDED_BY(draws) = true;
+    double promised_rad GUARDED_BY(draws) = 0;  ///< error that the last cut was to keep; 0: none
     /// How long the frame before took; on a clock that does not run within frames, as predicted. 0: it drew no cut.
     double last_frame_us GUARDED_BY(draws) = 0;
     SubmitReport last_report GUARDED_BY(draws);  ///< of the last frame that drew a cut

@@ -25,8 +25,8 @@ void Engine::Impl::count_error(model::Index node, float error_rad, float importa
 
 /// It may be kept although the cut breaks it: items outside the pose's view are not drawn.
 rt::Guarantee Engine::Impl::guarantee_of(const SubmitReport& report) const {
-    if (!(options.max_error_rad > 0.0)) return rt::Guarantee::none;
-    if (static_cast<double>(report.worst_weighted_rad) <= options.max_error_rad) return rt::Guarantee::kept;
+    if (!(promised_rad > 0.0)) return rt::Guarantee::none;
+    if (static_cast<double>(report.worst_weighted_rad) <= promised_rad) return rt::Guarantee::kept;
     if (use_last) return rt::Guarantee::unprepared;
     return cut.guarantee > rt::Guarantee::kept ? cut.guarantee : rt::Guarantee::stand_ins;
 }
@@ -258,6 +258,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.filter = stats.filter;
     report.floor_share = e.floor.floor_share();
     report.guarantee = e.guarantee_of(report);
+    report.promised_rad = e.promised_rad;
     e.report_items(report);
     e.last_report = report;
     e.last_frame_us = timed ? report.finished_us : report.predicted_us * e.correction.factor;

@@ -141,6 +141,9 @@ void evaluate_button(Binding& b, DeviceOutput& output, const DeviceState& state,
         case Action::pause:
             output.request.pause |= edge;
             break;
+        case Action::sunlight:
+            output.request.sunlight |= edge;
+            break;
         case Action::dead_man:
             output.has_dead_man = true;
             // Raw: its release is never delayed (safety/ debounces the press).

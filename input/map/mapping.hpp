@@ -26,12 +26,13 @@ enum class Action : std::uint8_t {
     next_viewpoint,
     reset,
     tour,
-    pause,       // edges, as in MotionRequest
+    pause,
+    sunlight,    // edges, as in MotionRequest
     dead_man,    // walks only while held
     stop,        // emergency stop: latched
     stop_reset,  // clears the latch once the stop is no longer asserted
 };
-constexpr std::size_t action_count = 15;
+constexpr std::size_t action_count = 16;
 
 /// As in TOML: "forward", "next_viewpoint", ...; index is the Action.
 std::span<const std::string_view> action_names();

@@ -244,6 +244,8 @@ std::string Teach::question() const {
             return "Press the button that goes back to the start";
         case Action::tour:
             return "Press the button that starts the tour";
+        case Action::sunlight:
+            return "Press the button that switches the sunlight";
         default:
             return "Press the button that pauses";
     }

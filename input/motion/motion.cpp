@@ -67,6 +67,7 @@ void count(PressCounts& presses, const MotionRequest& request) {
     presses.reset += request.reset ? 1 : 0;
     presses.tour += request.tour ? 1 : 0;
     presses.pause += request.pause ? 1 : 0;
+    presses.sunlight += request.sunlight ? 1 : 0;
 }
 
 void follow(MotionState& state, const MotionLimits& limits, const MotionRequest& request, Order order, double dt_s) {

@@ -38,6 +38,7 @@ constexpr UsualKey usual_keys[] = {
     {"key-home", Action::reset, 1},
     {"key-t", Action::tour, 1},
     {"key-p", Action::pause, 1},
+    {"key-l", Action::sunlight, 1},
 };
 
 DeviceMapping usual_mapping(double deg_per_px) {

@@ -16,6 +16,7 @@
 #include "render/bake/ground.hpp"
 #include "render/bake/limits.hpp"
 #include "render/bake/materials.hpp"
+#include "render/bake/openness.hpp"
 #include "render/bake/picture_loss.hpp"
 #include "render/bake/proxies.hpp"
 #include "render/bake/stage.hpp"
@@ -54,6 +55,7 @@ struct BakeContext {
     std::vector<std::vector<std::uint32_t>> members;  ///< by cluster: the objects below it
     std::vector<std::uint32_t> entities;              ///< by node: the object, or after these the cluster
     std::vector<bool> cut_out;                        ///< by material
+    Openness openness;
 
     ProxyInput proxy_input() const;
     void place_objects();
@@ -68,6 +70,7 @@ struct BakeContext {
     void bound(const ProxyInput& input, model::Index n, BoxForm& box) const;
     std::optional<PlacedBoxes> add_boxes();
     void measure_areas();
+    bool measure_light();
     bool measure_pictures();
     void find_effects();
     void emit_object(model::Index node, std::uint32_t object, const std::vector<EmittedChain>& chains);
@@ -395,10 +398,29 @@ void BakeContext::find_effects() {
     }
     std::vector<bool> used(model.materials.size(), false);
     for (const model::Part& part : model.parts) used[part.material] = true;
+    for (const auto& [copy, original] : openness.copies) {  // what only copies are drawn with is found without the sun
+        if (!used[copy] || used[original]) continue;
+        used[original] = true;
+        model.materials[original].effects = model.materials[copy].effects;
+    }
     for (std::size_t m = 0; m < used.size(); ++m) {  // what nothing is drawn with calls for nothing
         if (!used[m]) model.materials[m].effects = 0;
     }
-    model.effects = bake::find_effects(model, material_triangles);
+    model.effects = bake::find_effects(model, material_triangles, openness);
+    add_sun_reason(scene, options.sun, model.effects);
+}
+
+/// Before boxes are captured, since their pictures hold light.
+bool BakeContext::measure_light() {
+    if (options.quality != Quality::full) return true;
+    const model::Ground ground = make_opaque_ground(scene, progress);
+    if (progress.stopped()) return false;
+    const RayTree opaque(ground);
+    Stage stage(progress, "light", openness_steps(model));
+    openness = measure_openness(
+        model, opaque, [](std::size_t count, const std::function<void(std::size_t)>& body) { for_all(count, body); },
+        [&] { return stage.step(); });
+    return !progress.stopped();
 }
 
 bool BakeContext::measure_pictures() {
@@ -413,10 +435,12 @@ bool BakeContext::measure_pictures() {
 }  // namespace
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
-    BakeContext context{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}, {}};
+    BakeContext context{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}, {}, {}};
     context.cut_out = cut_out_materials(scene);
     context.proxy = add_materials(scene, context.model);
     mark_vertex_colours(scene, context.model);
+    if (scene.sun) context.model.sun_direction = scene.sun->towards;
+    if (options.sun) context.model.sun_direction = model::towards_sun(*options.sun);
     bool coloured = false;
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         coloured |= (context.model.materials[m].effects & (model::effect_texture | model::effect_vertex_colour)) != 0;
@@ -442,6 +466,8 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         return ok.error();
     arena.execute([&] {
         context.emit();
+        done = context.measure_light();
+        if (!done) return;
         std::optional<PlacedBoxes> boxes = context.add_boxes();
         done = boxes.has_value();
         if (!done) return;

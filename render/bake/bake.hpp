@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "render/import/scene.hpp"
 #include "render/model/cost.hpp"
 #include "render/model/limits.hpp"
 #include "render/model/model.hpp"
+#include "render/model/sun_time.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
 
@@ -17,10 +19,11 @@ enum class Quality { draft, full };
 /// Settings of a bake.
 struct BakeOptions {
     Quality quality = Quality::draft;
-    double level_ratio = 0;                        ///< of triangles, from a level to the next coarser; 0: by the quality
-    bool whole_objects = false;                    ///< objects are cut for too many triangles alone, not for their length
-    int workers = 0;                               ///< 0: all cores
-    double frame_us = 33333;                       ///< the frame of the 1/16 rule, at 30 Hz
+    double level_ratio = 0;             ///< of triangles, from a level to the next coarser; 0: by the quality
+    bool whole_objects = false;         ///< objects are cut for too many triangles alone, not for their length
+    int workers = 0;                    ///< 0: all cores
+    double frame_us = 33333;            ///< the frame of the 1/16 rule, at 30 Hz
+    std::optional<model::SunTime> sun;  ///< the caller sees that it is above the horizon; none: the scene's, else a fixed one
     const model::CostModel* costs = nullptr;       ///< calibrated; null: default_costs()
     model::Counts max_counts = model::max_counts;  ///< limits of the model; tests lower them
 };

@@ -102,13 +102,25 @@ struct Painter {
         vec4 colour(material.colour[0], material.colour[1], material.colour[2], material.colour[3]);
         if ((material.effects & model::effect_vertex_colour) != 0)
             colour *= vec4(v.colour[0], v.colour[1], v.colour[2], v.colour[3]) / 255.0F;
-        if (!picture.lit || (material.effects & model::effect_sun) == 0) return colour;
+        constexpr model::EffectMask light = model::effect_sun | model::effect_openness;
+        if (!picture.lit || (material.effects & light) == 0) return colour;
         vec3 n = cofactor * vec3(v.normal[0], v.normal[1], v.normal[2]);
         n *= (mirrored ? -1.0F : 1.0F) / std::sqrt(std::max(glm::dot(n, n), 1e-30F));
-        if (material.two_sided && glm::dot(n, picture.view.direction.towards) < 0.0F) n = -n;
-        const vec3 sky = glm::mix(vec3(0.34F, 0.32F, 0.30F), vec3(0.52F, 0.56F, 0.62F), 0.5F * n.y + 0.5F);
-        const float sun = std::max(glm::dot(n, vec3(model.sun_direction)), 0.0F);
-        return {vec3(colour) * (sky + vec3(0.56F, 0.53F, 0.47F) * sun), colour.a};
+        const bool turned = material.two_sided && glm::dot(n, picture.view.direction.towards) < 0.0F;
+        if (turned) n = -n;
+        vec3 by_light(1.0F);
+        if ((material.effects & model::effect_sun) != 0) {
+            const vec3 sky = glm::mix(vec3(0.34F, 0.32F, 0.30F), vec3(0.52F, 0.56F, 0.62F), 0.5F * n.y + 0.5F);
+            const float sun = std::max(glm::dot(n, vec3(model.sun_direction)), 0.0F);
+            by_light = sky + vec3(0.56F, 0.53F, 0.47F) * sun;
+        }
+        if ((material.effects & model::effect_openness) != 0) {
+            const float sky = 1 - static_cast<float>(v.hidden[turned ? 1 : 0]) / 255.0F;
+            const float near = 1 - static_cast<float>(v.hidden[turned ? 3 : 2]) / 255.0F;
+            const vec3 room = vec3(0.78F, 0.76F, 0.72F) + (0.05F * n.x + 0.10F * n.y - 0.03F * n.z);
+            by_light = glm::mix(room, by_light, std::min(1.0F, 4.0F * sky)) * (0.55F + 0.45F * near);
+        }
+        return {vec3(colour) * by_light, colour.a};
     }
     [[nodiscard]] bool textured() const { return (material.effects & model::effect_texture) != 0; }
     [[nodiscard]] Triangle triangle_of(const std::array<Corner, 3>& corners, float area) const;

@@ -57,6 +57,12 @@ public:
         }
         return go_;
     }
+    /// Solid triangles alone, without rules of nodes. False: stopped.
+    bool run_opaque() {
+        find_facts();
+        if (go_) classify_solids(false);
+        return go_;
+    }
     [[nodiscard]] model::Ground trees();
     [[nodiscard]] BlockingTriangles& blocking() { return blocking_; }
 
@@ -71,13 +77,13 @@ private:
             if (!stage_.step()) go_ = false;
         });
     }
-    void classify_solids() {
+    void classify_solids(bool by_rules = true) {
         for_all(scene_.nodes.size(), [&](std::size_t n) {
             if (!go_) return;
             const importer::Node& node = scene_.nodes[n];
             if (is_placed(scene_, node)) {
                 const GroundFacts& facts = facts_[node.mesh];
-                if (node.walk == importer::WalkRule::by_rule)
+                if (!by_rules || node.walk == importer::WalkRule::by_rule)
                     blocking_[n] = blocking_solids(facts, node.world);
                 else
                     blocking_[n].assign(facts.solid.size(), node.walk == importer::WalkRule::block);
@@ -205,6 +211,11 @@ model::Ground make_ground(const importer::Scene& scene, const Progress& progress
     model::Ground ground = maker.trees();
     if (blocking != nullptr) *blocking = std::move(maker.blocking());
     return ground;
+}
+
+model::Ground make_opaque_ground(const importer::Scene& scene, const Progress& progress) {
+    GroundMaker maker(scene, progress);
+    return maker.run_opaque() ? maker.trees() : model::Ground{};
 }
 
 std::vector<std::string> ground_warnings(const model::Ground& ground, const Box& all) {

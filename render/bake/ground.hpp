@@ -16,6 +16,10 @@ using BlockingTriangles = std::vector<std::vector<bool>>;
 /// them. Empty if the user stops it. `blocking`, if given, receives the classes.
 model::Ground make_ground(const importer::Scene& scene, const Progress& progress, BlockingTriangles* blocking = nullptr);
 
+/// The opaque triangles of all placed nodes, whatever stops a walker: what hides the sky. Glass and cut-out cards are left out,
+/// and so are parts smaller than a foot. As make_ground() else.
+model::Ground make_opaque_ground(const importer::Scene& scene, const Progress& progress);
+
 /// Guesses that a person should know of: no floor, or a size at which nobody can walk. One line each. `all`: the model's box.
 std::vector<std::string> ground_warnings(const model::Ground& ground, const Box& all);
 

@@ -281,13 +281,38 @@ std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model:
                   {std::to_integer<int>(texel[0]), std::to_integer<int>(texel[1]), std::to_integer<int>(texel[2])});
 }
 
-std::vector<model::EffectFinding> find_effects(const model::Model& model,
-                                               const std::vector<std::uint64_t>& triangles_of_material) {
+namespace {
+
+/// What was measured of light changes two findings.
+void add_openness(const Openness& openness, std::vector<model::EffectFinding>& findings) {
+    if (!openness.measured) return;
+    for (model::EffectFinding& f : findings) {
+        if (f.bit == model::effect_openness) {
+            f.called_for = true;
+            f.triangles = openness.triangles;
+            f.reason = fmt::format("what {} lit vertices see of sky and room was measured", openness.vertices);
+        } else if (f.bit == model::effect_sun) {
+            f.triangles = openness.triangles - openness.closed;
+            if (openness.closed == openness.triangles)
+                f.reason = fmt::format("none of {} lit triangles sees any sky{}", openness.triangles,
+                                       f.called_for ? "; baked forms of several objects do" : "");
+            else if (openness.closed > 0)
+                f.reason += fmt::format("; {} of {} lit triangles see no sky and are drawn without it", openness.closed,
+                                        openness.triangles);
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
+                                               const Openness& openness) {
     constexpr std::array<const char*, model::effect_count> absent = {
-        "no material has an image", "all vertex colours are white or absent", "every material is unlit",
-        "no material has alpha mode MASK", "no material has alpha mode BLEND"};
-    constexpr std::array<const char*, model::effect_count> what = {"have an image", "have vertex colours", "are lit",
-                                                                   "are cut out by alpha", "are transparent"};
+        "no material has an image",         "all vertex colours are white or absent",
+        "every material is unlit",          "no material has alpha mode MASK",
+        "no material has alpha mode BLEND", "not measured: the bake is of quality draft, or nothing lit is hidden from the sky"};
+    constexpr std::array<const char*, model::effect_count> what = {"have an image",        "have vertex colours", "are lit",
+                                                                   "are cut out by alpha", "are transparent",     "are shaded"};
     std::vector<model::EffectFinding> findings;
     for (std::size_t e = 0; e < model::effect_count; ++e) {
         model::EffectFinding f;
@@ -307,7 +332,20 @@ std::vector<model::EffectFinding> find_effects(const model::Model& model,
                                  : absent[e];
         findings.push_back(std::move(f));
     }
+    add_openness(openness, findings);
     return findings;
+}
+
+void add_sun_reason(const importer::Scene& scene, const std::optional<model::SunTime>& time,
+                    std::vector<model::EffectFinding>& findings) {
+    for (model::EffectFinding& f : findings) {
+        if (f.bit != model::effect_sun || !f.called_for) continue;
+        if (time)
+            f.reason += fmt::format("; from where it stands at {:.4g} h of day {:.4g} at {:.4g} degrees", time->hour, time->day,
+                                    time->latitude_deg);
+        else if (scene.sun)
+            f.reason += fmt::format("; from where the scene's light '{}' shines", scene.sun->name);
+    }
 }
 
 }  // namespace surefoot::bake

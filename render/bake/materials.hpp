@@ -3,12 +3,15 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "render/bake/geometry.hpp"
+#include "render/bake/openness.hpp"
 #include "render/import/scene.hpp"
 #include "render/model/model.hpp"
+#include "render/model/sun_time.hpp"
 
 namespace surefoot::bake {
 
@@ -33,7 +36,10 @@ std::array<std::uint8_t, 4> tinted(const model::Material& material, const model:
 std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model::Material& material, const model::Vertex& vertex);
 
 /// One finding an effect, with its reason. triangles_of_material: full detail.
-std::vector<model::EffectFinding> find_effects(const model::Model& model,
-                                               const std::vector<std::uint64_t>& triangles_of_material);
+std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
+                                               const Openness& openness = {});
+/// Adds to the sun's finding why it stands where it does, if it is called for.
+void add_sun_reason(const importer::Scene& scene, const std::optional<model::SunTime>& time,
+                    std::vector<model::EffectFinding>& findings);
 
 }  // namespace surefoot::bake

@@ -7,13 +7,27 @@ namespace surefoot::effects {
 
 namespace {
 
-constexpr model::EffectMask varying_colour = model::effect_vertex_colour | model::effect_sun;
+constexpr model::EffectMask varying_colour = model::effect_vertex_colour | model::effect_sun | model::effect_openness;
+
+// Of programs with light. Normals go by the cofactor matrix, which serves non-uniform scales; its sign is the determinant's, so a
+// mirrored placement turns it back. Normals of two-sided materials turn towards the eye.
+constexpr std::string_view normal_declarations = "in vec3 normal;\nin float two_sided;\n";
+constexpr std::string_view normal_code =
+    "    vec3 cofactor_x = cross(world_rows[1].xyz, world_rows[2].xyz);\n"
+    "    vec3 cofactor_y = cross(world_rows[2].xyz, world_rows[0].xyz);\n"
+    "    vec3 cofactor_z = cross(world_rows[0].xyz, world_rows[1].xyz);\n"
+    "    vec3 n = vec3(dot(cofactor_x, normal), dot(cofactor_y, normal), dot(cofactor_z, normal));\n"
+    "    n *= inversesqrt(max(dot(n, n), 1e-30)) * sign(dot(world_rows[0].xyz, cofactor_x));\n"
+    "    bool turned = two_sided > 0.5 && dot(n, world) > 0.0;\n"
+    "    if (turned) n = -n;\n"
+    "    vec3 lit = vec3(1.0);\n";
+constexpr std::string_view light_code = "    v_colour.rgb *= lit;\n";
 
 }  // namespace
 
 std::span<const EffectModule> all_effects() {
-    static const std::array<EffectModule, model::effect_count> modules{texture_module, vertex_colour_module, sun_module,
-                                                                       alpha_mask_module, blend_module};
+    static const std::array<EffectModule, model::effect_count> modules{texture_module,    vertex_colour_module, sun_module,
+                                                                       alpha_mask_module, blend_module,         openness_module};
     return modules;
 }
 
@@ -33,9 +47,14 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
     std::string fragment_declarations;
     std::string fragment_code;
     std::string fragment_code_samples;
-    bool covers = false;
+    bool covers = false, has_light = false;
     for (const EffectModule& module : all_effects()) {
         if ((mask & module.bit) == 0) continue;
+        if (module.is_light && !has_light) {
+            vertex_declarations += normal_declarations;
+            vertex_code += normal_code;
+            has_light = true;
+        }
         vertex_declarations += module.vertex_declarations;
         vertex_code += module.vertex_code;
         fragment_declarations += module.fragment_declarations;
@@ -44,6 +63,7 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
         fragment_code_samples += other ? module.fragment_code_samples : module.fragment_code;
         covers = covers || other;
     }
+    if (has_light) vertex_code += light_code;
     // A colour that no effect varies over the triangle needs no interpolation.
     const std::string flat = (mask & varying_colour) == 0 ? "flat " : "";
     gl::ProgramSource source;

@@ -10,5 +10,6 @@ extern const EffectModule vertex_colour_module;
 extern const EffectModule sun_module;
 extern const EffectModule alpha_mask_module;
 extern const EffectModule blend_module;
+extern const EffectModule openness_module;
 
 }  // namespace surefoot::effects

@@ -85,7 +85,9 @@ struct DeviceOptions {
     rt::TextureFilter filter = rt::TextureFilter::automatic;
     bool smaller = false;            ///< frames below full resolution show the mip levels of the whole one; prepared by load()
     bool processor_enlarges = true;  ///< on a software driver: smaller frames are enlarged by the processor, not by a pass
-    bool second_filter = false;      ///< prepares set_filter(), where `filter` is automatic and the driver is software
+    model::EffectMask switchable =
+        0;                       ///< effects that show_switchable(false) leaves out; load() compiles programs without them too
+    bool second_filter = false;  ///< prepares set_filter(), where `filter` is automatic and the driver is software
 };
 
 /// Counts and times of one drawn frame.
@@ -141,6 +143,8 @@ public:
     // ---- the frame; no own allocation, no throw ----
     /// The filter of the pictures that begin from now on. A change takes a call or two of the driver for each texture array.
     virtual void set_filter(rt::TextureFilter filter) REQUIRES(draws) { static_cast<void>(filter); }
+    /// Whether the switchable effects are drawn from now on. Call it between pictures; it costs nothing by itself.
+    virtual void show_switchable(bool shown) REQUIRES(draws) { static_cast<void>(shown); }
     /// `resolution`: share of the picture's width and height at which it is drawn, then enlarged once by finish_frame(). The step
     /// of model::resolution_steps that is not above it, or the least; NaN, zero and below mean 1.
     virtual void begin_frame(const Pose& pose, float resolution) REQUIRES(draws) = 0;

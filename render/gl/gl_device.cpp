@@ -90,11 +90,23 @@ void GlDevice::set_texture_detail(std::size_t step) {
     state_known_ = false;
 }
 
+/// The state classes of all parts, then those that only parts without the switchable effects have.
+std::vector<model::EffectMask> GlDevice::find_programs() {
+    std::vector<model::EffectMask> masks = tables_.masks;
+    without_.clear();
+    for (const model::EffectMask mask : tables_.masks) {
+        const auto found = std::find(masks.begin(), masks.end(), mask & ~options_.switchable);
+        without_.push_back(static_cast<std::uint16_t>(found - masks.begin()));
+        if (found == masks.end()) masks.push_back(mask & ~options_.switchable);
+    }
+    return masks;
+}
+
 Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& programs) {
     free_resources(gl_, resources_);
     tables_ = draw::make_tables(model);
     const LoadOptions how{filter() == rt::TextureFilter::trilinear, samples() > 1};
-    auto resources = load_resources(gl_, model, tables_.masks, tables_.textures, programs, frame_, how);
+    auto resources = load_resources(gl_, model, find_programs(), tables_.textures, programs, frame_, how);
     if (!resources) return resources.error();
     resources_ = std::move(*resources);
     set_filter_ = filter();
@@ -110,6 +122,18 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
 /// Every combination of program, texture and culling in the model is drawn once: drivers compile on first use, and the frame
 /// may not pay for it. One triangle of each; what it shows does not matter.
 void GlDevice::warm_up() {
+    const bool off = off_;
+    if (options_.switchable != 0) {
+        off_ = !off;
+        warm_up_parts();
+        off_ = off;
+    }
+    warm_up_parts();
+    warm_up_passes();
+    stats_ = {};
+}
+
+void GlDevice::warm_up_parts() {
     std::vector<std::pair<State, Pending>> kinds;
     for (std::uint32_t r = 0; r < tables_.reps.size(); ++r) {
         const draw::DrawRep& rep = tables_.reps[r];
@@ -133,7 +157,7 @@ void GlDevice::warm_up() {
         begin_frame(Pose{}, (way & smaller) != 0 ? model::resolution_steps.back() : 1.0F);
         for (auto& [state, pending] : kinds) {
             if (used_instances_ >= frame_.instances.size()) break;
-            set_blending(tables_.parts[pending.part].blended);
+            set_blending(is_blended(tables_.parts[pending.part]));
             const std::uint32_t at = used_commands_;
             write_instance(pending, used_instances_);
             append_command(pending, used_instances_, at);
@@ -145,8 +169,6 @@ void GlDevice::warm_up() {
         set_blending(false);
         finish_frame();
     }
-    warm_up_passes();
-    stats_ = {};
 }
 
 void GlDevice::warm_up_passes() {

@@ -33,6 +33,7 @@ public:
     [[nodiscard]] rt::TextureFilter filter() const override;
     [[nodiscard]] bool switches_filter() const override;
     void set_filter(rt::TextureFilter filter) override REQUIRES(draws);
+    void show_switchable(bool shown) override REQUIRES(draws) { off_ = !shown; }
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
@@ -77,7 +78,9 @@ private:
 
     GlDevice(std::unique_ptr<Context> context, const DeviceOptions& options);
     Result<void> set_up() REQUIRES(draws);
+    std::vector<model::EffectMask> find_programs() REQUIRES(draws);
     void warm_up() REQUIRES(draws);
+    void warm_up_parts() REQUIRES(draws);
     void warm_up_passes() REQUIRES(draws);
     void copy_to_window(const FittedPicture& fit, bool half_turn) REQUIRES(draws);
     void start_picture(const Pose& pose) REQUIRES(draws);
@@ -97,7 +100,17 @@ private:
     void prepare_presenting() REQUIRES(draws);
     void fill_window() REQUIRES(draws);
     void fill_pixel_rows(const PixelRows& rows) REQUIRES(draws);
-    [[nodiscard]] State state_of(const Pending& pending) const;
+    [[nodiscard]] std::uint32_t program_of(const draw::DrawPart& part) const REQUIRES(draws) {
+        return off_ ? without_[part.program] : part.program;
+    }
+    /// As it is drawn now: a switchable effect that is left out is none.
+    [[nodiscard]] bool is_blended(const draw::DrawPart& part) const REQUIRES(draws) {
+        return part.blended && !(off_ && (options_.switchable & model::effect_blend) != 0);
+    }
+    [[nodiscard]] std::uint32_t texture_of(const draw::DrawPart& part) const REQUIRES(draws) {
+        return off_ && (options_.switchable & model::effect_texture) != 0 ? model::none : part.texture;
+    }
+    [[nodiscard]] State state_of(const Pending& pending) const REQUIRES(draws);
     void submit(std::span<Pending> sorted) REQUIRES(draws);
     void submit_blended() REQUIRES(draws);
     void issue(const State& state, std::uint32_t first, std::uint32_t count) REQUIRES(draws);
@@ -124,6 +137,9 @@ private:
     Resources resources_;
     draw::DrawTables tables_;
     rt::TextureFilter set_filter_ GUARDED_BY(draws) = rt::TextureFilter::bilinear;  ///< in the parameters of all textures
+
+    bool off_ GUARDED_BY(draws) = false;                    ///< the switchable effects are left out
+    std::vector<std::uint16_t> without_ GUARDED_BY(draws);  ///< by program of a part: the one without the switchable effects
 
     std::size_t detail_step_ GUARDED_BY(draws) = 0;  ///< the step for which all textures choose their mip levels
 

@@ -88,7 +88,7 @@ void GlDevice::set_coverage(bool on) {
 
 GlDevice::State GlDevice::state_of(const Pending& pending) const {
     const draw::DrawPart& part = tables_.parts[pending.part];
-    return {part.program, part.texture, draw::culling(part, tables_.placements[tables_.reps[pending.rep].placement])};
+    return {program_of(part), texture_of(part), draw::culling(part, tables_.placements[tables_.reps[pending.rep].placement])};
 }
 
 void GlDevice::draw(std::span<const DrawItem> items) { draw_parts(items, Parts::all); }
@@ -113,8 +113,8 @@ void GlDevice::draw_parts(std::span<const DrawItem> items, Parts parts) {
         stats_.triangles += rep.triangles;
         for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
             const draw::DrawPart& part = tables_.parts[p];
-            if (part.index_count == 0 || (parts != Parts::all && part.blended != (parts == Parts::blended))) continue;
-            if (part.blended) {
+            if (part.index_count == 0 || (parts != Parts::all && is_blended(part) != (parts == Parts::blended))) continue;
+            if (is_blended(part)) {
                 if (blended_count_ == blended_.size()) submit_blended();  // out of order rather than not at all
                 // Far first; ids break ties.
                 const std::uint64_t key = static_cast<std::uint64_t>(~distance_bits(distance)) << 32U | item.node;
@@ -125,7 +125,8 @@ void GlDevice::draw_parts(std::span<const DrawItem> items, Parts parts) {
                 submit({pending_.data(), count});
                 count = 0;
             }
-            pending_[count++] = {state_key(part.program, draw::culling(part, placed), part.texture, distance), p, item.rep};
+            pending_[count++] = {state_key(program_of(part), draw::culling(part, placed), texture_of(part), distance), p,
+                                 item.rep};
         }
     }
     submit({pending_.data(), count});

@@ -24,11 +24,12 @@ struct Attribute {
     int locations;  ///< an array takes several
 };
 
-constexpr std::array<Attribute, 9> attributes{{
+constexpr std::array<Attribute, 10> attributes{{
     {"position", vertex_binding, 3, GL_FLOAT, GL_FALSE, offsetof(model::Vertex, position), 1},
     {"normal", vertex_binding, 3, GL_BYTE, GL_TRUE, offsetof(model::Vertex, normal), 1},
     {"vertex_colour", vertex_binding, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(model::Vertex, colour), 1},
     {"uv", vertex_binding, 2, GL_FLOAT, GL_FALSE, offsetof(model::Vertex, uv), 1},
+    {"hidden", vertex_binding, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(model::Vertex, hidden), 1},
     {"world_rows", instance_binding, 4, GL_FLOAT, GL_FALSE, offsetof(Instance, rows), 3},
     {"material_colour", instance_binding, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Instance, colour), 1},
     {"alpha_cutoff", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, alpha_cutoff), 1},

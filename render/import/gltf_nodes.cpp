@@ -90,8 +90,9 @@ Result<std::vector<dmat4>> instances_of(const tinygltf::Model& model, const tiny
 class Walk {
 public:
     Walk(const tinygltf::Model& model, const std::string& file, Scene& scene)
-        : model_(model), file_(file), scene_(scene), state_(model.nodes.size(), State::fresh) {}
+        : model_(model), file_(file), scene_(scene), lights_(model, scene), state_(model.nodes.size(), State::fresh) {}
 
+    LightReader& lights() { return lights_; }
     /// Leaves this node out, and what is below it.
     void skip(int node) { state_[static_cast<std::size_t>(node)] = State::skipped; }
 
@@ -156,6 +157,7 @@ private:
         if (from.mesh >= 0 && to.mesh == none)
             scene_.damaged(fmt::format("Node '{}' names mesh {}, which does not exist", to.name, from.mesh));
         if (from.skin >= 0) scene_.warnings.push_back(fmt::format("Node '{}' is taken in its rest pose (skin)", to.name));
+        lights_.add(from, to.world);
         const auto index = static_cast<Index>(scene_.nodes.size());
         const auto instancing = from.extensions.find("EXT_mesh_gpu_instancing");
         scene_.nodes.push_back(std::move(to));
@@ -180,6 +182,7 @@ private:
     const tinygltf::Model& model_;
     const std::string& file_;
     Scene& scene_;
+    LightReader lights_;
     std::vector<State> state_;
     std::vector<Frame> stack_;
 };
@@ -252,6 +255,7 @@ Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, S
     for (const int root : roots_of(model, scene)) {
         if (auto walked = walk.from(root); !walked) return walked;
     }
+    walk.lights().finish();
     for (const StandInClaim& claim : claims)
         if (claim.used) add_stand_in(model, file, claims, claim, scene);
     return {};

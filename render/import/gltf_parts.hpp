@@ -65,6 +65,25 @@ struct StandInClaim {
 /// All of a file, in its order. Warnings: nodes that do not exist.
 std::vector<StandInClaim> stand_in_claims(const tinygltf::Model& model, std::vector<std::string>& warnings);
 
+// ---- lights: the brightest distant one is the sun ----
+
+/// Takes one node after the other.
+class LightReader {
+public:
+    LightReader(const tinygltf::Model& model, Scene& scene) : model_(model), scene_(scene) {}
+    /// Sets scene.sun if the node holds a brighter distant light. Warnings: lights that do not exist, with broken numbers, or
+    /// from below the horizon.
+    void add(const tinygltf::Node& node, const dmat4& world);
+    /// A warning that counts the lamps.
+    void finish();
+
+private:
+    const tinygltf::Model& model_;
+    Scene& scene_;
+    std::size_t lamps_ = 0;
+    std::string first_lamp_;
+};
+
 // ---- the node graph to a Scene's nodes: world matrices in double, instances, cycles refused ----
 
 /// Reads the default scene, else the first, else every root; then the stand-ins, whose nodes are not drawn by themselves. Error:

@@ -73,6 +73,7 @@ void append(Scene& to, Scene&& from) {
     move_all(to.materials, from.materials);
     move_all(to.images, from.images);
     move_all(to.stand_ins, from.stand_ins);
+    if (from.sun && (!to.sun || from.sun->intensity > to.sun->intensity)) to.sun = std::move(from.sun);
     move_all(to.sources, from.sources);
     move_all(to.warnings, from.warnings);
     move_all(to.damage, from.damage);

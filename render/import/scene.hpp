@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,13 @@ struct StandIn {
     Mesh mesh;        ///< in the frame of that mesh
 };
 
+/// A distant light above the horizon.
+struct Sun {
+    std::string name;
+    dvec3 towards{0, 1, 0};  ///< unit
+    double intensity = 0;    ///< as the file has it, above 0
+};
+
 /// An imported scene, in metres with +Y up.
 struct Scene {
     std::vector<Mesh> meshes;
@@ -79,6 +87,7 @@ struct Scene {
     std::vector<Material> materials;  ///< at least one
     std::vector<image::Image> images;
     std::vector<StandIn> stand_ins;
+    std::optional<Sun> sun;  ///< the brightest one
     std::vector<std::string> sources;
     std::vector<std::string> warnings;              ///< repaired or dropped data, one line each with counts
     std::vector<Damage> damage;                     ///< warnings about drawn things, which a person should repair

@@ -14,9 +14,11 @@ enum Effect : std::uint32_t {
     effect_sun = 1U << 2U,            ///< sun and sky light, Gouraud: needs normals
     effect_alpha_mask = 1U << 3U,     ///< alpha test against the material's cutoff
     effect_blend = 1U << 4U,          ///< ordered transparency: drawn last, back to front
+    effect_openness = 1U << 5U,       ///< the sun where the sky is seen, a room's light elsewhere, as baked at the vertices
 };
 using EffectMask = std::uint32_t;
-constexpr int effect_count = 5;
+constexpr int effect_count = 6;
+constexpr int first_effect_count = 5;  ///< of the oldest files that open
 
 /// Whether a scene calls for an effect, and the evidence. One entry for every effect, called for or not.
 struct EffectFinding {
@@ -24,6 +26,7 @@ struct EffectFinding {
     bool called_for = false;
     std::uint64_t triangles = 0;  ///< full-detail triangles that use it
     std::string reason;           ///< e.g. "78 images on 74 materials", or why not
+    bool looked_for = true;       ///< false: the bake did not know the effect; such entries are not in the file
 };
 
 }  // namespace surefoot::model

@@ -24,11 +24,13 @@ constexpr Index none = 0xffffffffU;
 
 /// One layout of 32 bytes for all meshes. A program reads only the attributes that its effects need.
 struct Vertex {
-    float position[3];        ///< in the geometry's own frame, metres before its Placement
-    std::int8_t normal[4];    ///< unit normal * 127; w unused
-    std::uint8_t colour[4];   ///< RGBA, sRGB-encoded as in the source; white where the source has none
-    float uv[2];              ///< texture coordinates, repeat
-    std::uint32_t spare = 0;  ///< zero; keeps the stride a power of two
+    float position[3];       ///< in the geometry's own frame, metres before its Placement
+    std::int8_t normal[4];   ///< unit normal * 127; w unused
+    std::uint8_t colour[4];  ///< RGBA, sRGB-encoded as in the source; white where the source has none
+    float uv[2];             ///< texture coordinates, repeat
+    /// Shares of 255 that are hidden: of the sky before and behind the surface, and of the room before and behind it. Zero where
+    /// it was not measured. Read with effect_openness.
+    std::uint8_t hidden[4]{};
 };
 static_assert(sizeof(Vertex) == 32);
 

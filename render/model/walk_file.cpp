@@ -12,6 +12,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -106,6 +107,12 @@ Result<void> write_pages(AtomicFile& out, std::span<const std::byte> payload, Pa
     return {};
 }
 
+std::vector<EffectFinding> looked_for(const std::vector<EffectFinding>& findings) {
+    std::vector<EffectFinding> out;
+    std::copy_if(findings.begin(), findings.end(), std::back_inserter(out), [](const EffectFinding& f) { return f.looked_for; });
+    return out;
+}
+
 std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, const PayloadSizes& sizes,
                                      const std::vector<PageEntry>& pages) {
     walk::PutArchive put;
@@ -132,7 +139,7 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
             put.list(m.textures);
             break;
         case effects_section:
-            put.list(m.effects);
+            put.list(looked_for(m.effects));
             break;
         case losses_section:
             walk::fields(put, m.colours);
@@ -266,6 +273,9 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
             break;
         case effects_section:
             take.list(m.effects);
+            if (m.effects.size() < static_cast<std::size_t>(first_effect_count)) break;  // validate() refuses it
+            for (auto e = m.effects.size(); e < static_cast<std::size_t>(effect_count); ++e)
+                m.effects.push_back({1U << e, false, 0, "an older bake did not look for it", false});
             break;
         case losses_section:
             walk::fields(take, m.colours);

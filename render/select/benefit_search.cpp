@@ -377,9 +377,11 @@ std::uint32_t fill_by_rate(const SelectInput& input, SelectState& state, CutBuil
 
 const SelectorEntry best_first_entry{
     "best-first", "the node of the greatest own benefit next, within the budget", GoesBy::budget, true, make_best_first, true};
-const SelectorEntry threshold_entry{usual_selector, "the step of the greatest value per cost next, within the budget",
-                                    GoesBy::budget, true,
-                                    make_threshold, true};
+const SelectorEntry threshold_entry{.name = usual_selector,
+                                    .help = "the step of the greatest value per cost next, within the budget",
+                                    .make = make_threshold,
+                                    .guarantees = true,
+                                    .by_value = true};
 const SelectorEntry two_stage_entry{"two-stage",    "the node of the greatest benefit in its subtree next, within the budget",
                                     GoesBy::budget, true,
                                     make_two_stage, true};

@@ -237,7 +237,12 @@ public:
         builder.buy_all_items(budget);
         builder.take_floor();
         CommonErrorCuts cuts(input, state, builder, budget);
-        (void)cuts.find(input.target_error_rad > 0.0 ? static_cast<float>(input.target_error_rad) : cuts.two_pixels_rad());
+        const float target = error_no_more_than(input.target_error_rad);
+        const CommonErrorCuts::Found found = cuts.find(target > 0.0F ? target : cuts.two_pixels_rad());
+        if (target > 0.0F) {
+            builder.promise(target);
+            builder.set_guarantee(found.worst_error_rad <= target ? rt::Guarantee::kept : rt::Guarantee::no_form);
+        }
         cuts.take();
         builder.finish(budget, 0, cut);
     }
@@ -257,9 +262,12 @@ const Selector& make_curve_accuracy() {
 const SelectorEntry curve_budget_entry{.name = "curve-budget",
                                        .help = "the greatest accuracy that all objects can share, within the budget",
                                        .make = make_curve_budget,
-                                       .guarantees = true,
-                                       .by_value = false};
-const SelectorEntry curve_accuracy_entry{"curve-accuracy", "the cheapest cut within one error for all objects; no budget",
-                                         GoesBy::threshold, false, make_curve_accuracy};
+                                       .guarantees = true};
+const SelectorEntry curve_accuracy_entry{.name = "curve-accuracy",
+                                         .help = "the cheapest cut within one error for all objects; no budget",
+                                         .goes_by = GoesBy::threshold,
+                                         .compared = false,
+                                         .make = make_curve_accuracy,
+                                         .keeps_target = true};
 
 }  // namespace surefoot::select

@@ -18,14 +18,13 @@ std::uint64_t mixed(std::uint64_t hash, const CutItem& item) {
     return hash ^ (hash >> 29U);
 }
 
-/// As a float that is no larger.
+}  // namespace
+
 float error_no_more_than(double error_rad) {
     if (!(error_rad > 0.0)) return 0.0F;
     const auto nearest = static_cast<float>(error_rad);
     return static_cast<double>(nearest) > error_rad ? std::nextafter(nearest, 0.0F) : nearest;
 }
-
-}  // namespace
 
 SelectState::SelectState() : scratch_(std::make_unique<Scratch>()) {}
 SelectState::~SelectState() = default;

@@ -50,6 +50,8 @@ public:
     /// What the input guarantees; 0: nothing.
     [[nodiscard]] float guaranteed_rad() const { return guaranteed_rad_; }
     [[nodiscard]] rt::Guarantee guarantee() const { return guarantee_; }
+    /// The error that finish() judges by, where the input guarantees none.
+    void promise(float error_rad) { guaranteed_rad_ = error_rad; }
     /// Told where the guarantee is bought; finish() writes it into the cut.
     void set_guarantee(rt::Guarantee guarantee) { guarantee_ = guarantee; }
     /// No item of a search has more error than this, but for those that have nothing better. Infinity: no limit.
@@ -122,6 +124,9 @@ private:
     rt::Guarantee guarantee_ = rt::Guarantee::none;
     ItemBuyer items_;
 };
+
+/// As a float that is no larger; 0 where it is not above 0.
+float error_no_more_than(double error_rad);
 
 /// Empties a cut and keeps its capacity.
 void clear(Cut& cut);

@@ -24,7 +24,8 @@ struct SelectorEntry {
     const Selector& (*make)() = nullptr;
     bool guarantees = false;    ///< buys SelectInput::max_error_rad first; others ignore it
     bool follows_time = false;  ///< goes by how long the frame before took: single places have none
-    bool by_value = true;       ///< of those that go by a budget: more time goes to what shows most; else to a common accuracy
+    bool keeps_target = false;  ///< promises SelectInput::target_error_rad of every cut: records say whether it was kept
+    bool by_value = false;      ///< of those that go by a budget: more time goes to what has most value for it
 };
 
 constexpr std::string_view usual_selector = "threshold";

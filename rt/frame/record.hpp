@@ -77,10 +77,11 @@ struct FrameRecord {
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;
     float cost_scale = 1;  ///< the setting's factor in predicted_us (real clock) or in actual_us (virtual clock)
     float prepare_cpu_us = 0;
-    float bought_us = 0;            ///< of predicted_us, without correction: what bought_items cost
-    float accuracy = 0;             ///< rad^-1, of the drawn items
-    float guaranteed_accuracy = 0;  ///< the setting min_accuracy, rad^-1; 0: nothing is guaranteed
-    float reached_accuracy = 0;     ///< as accuracy, of errors times importance
+    float bought_us = 0;  ///< of predicted_us, without correction: what bought_items cost
+    float accuracy = 0;   ///< rad^-1, of the drawn items
+    /// rad^-1: the setting min_accuracy, or what a selector by accuracy alone was to reach; 0: nothing is guaranteed.
+    float guaranteed_accuracy = 0;
+    float reached_accuracy = 0;  ///< as accuracy, of errors times importance
     Guarantee guarantee = Guarantee::none;
     std::uint32_t binding_node = no_node;  ///< of the model: the node of reached_accuracy; no_node: all is exact
     float value = 0;        ///< share of full detail's value that is drawn, 0..1, without blur; 0: not known, no set was used
@@ -96,6 +97,7 @@ struct FrameRecord {
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
     ShownBy shown_by = ShownBy::nothing;
     bool at_rest = false;  ///< no cut was drawn: the shown picture stays, or full detail replaces it
+    bool sunlight = true;  ///< frames of the walk: it was drawn, where the model has any
     bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss
     Cause cause = Cause::none;
     std::uint32_t block = 0;              ///< control blocks: number of the 2 s block

@@ -103,11 +103,15 @@ TEST(AccuracyPage, SaysWhatOneMoreMillisecondBuys) {
     run.rate_hz = 30;
     run.working_ms = 29.3;
     run.one_more_ms = {{point(29, 50, 40.25), point(30, 53, 40.5)}};
+    run.one_more_ms[0].now.value = 0.9;
+    run.one_more_ms[0].more.value = 0.9123;
+    run.one_more_ms[0].now.estimated_gain = 0.0117;
     run.points.front().accuracy_front = run.points.front().psnr_front = true;
     const test::TemporaryFolder folder;
     ASSERT_TRUE(write_accuracy_page(folder / "a", run).ok());
     const auto page = *read_text(folder / "a/index.html");
-    for (const char* part : {"30.3 ms shows instead", "50 → <b>53</b>", "40.25 → <b>40.50</b>", "class=\"front\""})
+    for (const char* part :
+         {"30.3 ms shows instead", "<td>1.23</td><td>1.17</td>", "50 → <b>53</b>", "40.25 → <b>40.50</b>", "class=\"front\""})
         EXPECT_NE(page.find(part), std::string::npos) << part;
     const auto json = nlohmann::json::parse(*read_text(folder / "a/accuracy.json"));
     EXPECT_EQ(json["one_more_ms"][0]["more"]["accuracy_worst"], 53);

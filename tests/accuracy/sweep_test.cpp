@@ -28,6 +28,8 @@ TEST(AccuracySweep, MarksTheBudgetOfTheRateWithOneSettingChanged) {
     ASSERT_TRUE(run.ok()) << run.error().text();
     EXPECT_EQ(run->points.size(), 2U);
     ASSERT_EQ(run->one_more_ms.size(), 1U);
+    EXPECT_GE(run->one_more_ms[0].now.estimated_gain, 0);
+    EXPECT_LE(run->one_more_ms[0].now.estimated_gain, 1);
     std::vector<std::string> changes;
     for (const ChangeMark& mark : run->changes) {
         changes.push_back(mark.change);

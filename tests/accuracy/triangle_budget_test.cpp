@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "rt/base/file.hpp"
 #include "tests/temporary_folder.hpp"
+#include "tests/text_pieces.hpp"
 #include "tests/walk/walk_fixture.hpp"
 #include "tools/accuracy/compare.hpp"
 
@@ -69,6 +71,11 @@ TEST(TriangleBudget, ThePageHoldsEveryPicture) {
     text << csv.rdbuf();
     EXPECT_NE(text.str().find("\"threshold\",0,190,400,20.0000,11.5000"), std::string::npos) << text.str();
     EXPECT_NE(text.str().find("\"threshold\",1,180,180,inf,inf"), std::string::npos) << text.str();
+    const std::string charts = *read_text(folder / "page/pictures.svg");
+    for (const char* part : {"xmlns=", "threshold: Triangles<", "threshold: SNR, dB<"})
+        EXPECT_NE(charts.find(part), std::string::npos) << part;
+    EXPECT_EQ(test::count_of(charts, "<svg"), 4U) << "three charts in one";
+    EXPECT_EQ(test::count_of(charts, "</svg>"), 4U);
     EXPECT_NE(compare_table(c).find("180 to 190 triangles a picture, SNR 11.5 to 11.5 dB"), std::string::npos)
         << compare_table(c);
     EXPECT_EQ(nlohmann::json::parse(compare_json(c))["budget_triangles"], 200);

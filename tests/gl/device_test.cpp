@@ -275,6 +275,40 @@ TEST_F(DeviceTest, only_the_scenes_programs_are_compiled) {
     EXPECT_TRUE(device_->program_text(model::effect_texture).empty());
 }
 
+TEST_F(DeviceTest, a_switched_off_sun_leaves_no_trace_and_comes_back) {
+    gl::DeviceOptions options;
+    options.kind = BackendKind::egl;
+    options.viewport = {side, side};
+    options.sky = {0, 0, 1};
+    options.switchable = model::effect_sun;
+    auto opened = gl::open_device(options);
+    ASSERT_TRUE(opened.ok()) << opened.error().text();
+    device_ = std::move(*opened);
+    SmallModel scene;
+    const auto lit = scene.square(scene.material(plain(0.5F, 0.5F, 0.5F, 1, model::effect_sun)), at(-0.5, 0, -1), 0.4F);
+    const auto plain_one = scene.square(scene.material(plain(1, 0, 0)), at(0.5, 0, -1), 0.4F);
+    const auto model = scene.finish();
+    const auto with = picture(model, {lit, plain_one});
+    EXPECT_EQ(device_->program_listing(), (std::vector<std::string>{"0: bare", "4: sun"})) << "one for both";
+    device_->draws.plays();
+    const std::vector<gl::DrawItem> items = {{lit, model.nodes[lit].first_rep}, {plain_one, model.nodes[plain_one].first_rep}};
+    for (const bool off : {true, false, false, true, true}) {
+        device_->show_switchable(!off);
+        show(*device_, items, straight());
+        const auto image = device_->read_pixels();
+        ASSERT_TRUE(image.ok());
+        EXPECT_EQ(pixel(*image, 75, 50), red);
+        const Pixel grey{128, 128, 128};
+        EXPECT_EQ(pixel(*image, 25, 50) == grey, off);
+        EXPECT_EQ(pixel(*image, 25, 50) == pixel(with, 25, 50), !off);
+    }
+    EXPECT_EQ(picture(model, {lit, plain_one}).rgba, [&] {
+        device_->draws.plays();
+        show(*device_, items, straight());
+        return device_->read_pixels()->rgba;
+    }()) << "loading anew keeps it off";
+}
+
 TEST_F(DeviceTest, a_program_that_does_not_compile_is_an_error_with_its_name) {
     SmallModel scene;
     scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -1));

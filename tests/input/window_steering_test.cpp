@@ -129,6 +129,24 @@ TEST(WindowSteering, ATapOfAKeyBetweenTwoStepsCounts) {
     EXPECT_EQ(rig.presses, 2) << "held, it is one press";
 }
 
+TEST(WindowSteering, LSwitchesTheSunlightOnceAPress) {
+    WindowRig rig;
+    rig.run(5);
+    rig.push({'l'});
+    rig.push({});
+    rig.run(5);
+    EXPECT_EQ(rig.sample.presses.sunlight, 1U) << "a tap between two steps";
+    rig.push({'l'});
+    rig.run(50);
+    EXPECT_EQ(rig.sample.presses.sunlight, 2U) << "held, it is one press";
+    EXPECT_EQ(rig.sample.presses.pause, 0U);
+    WindowRig mapped("[[device]]\nproduct_name = \"window\"\n[[device.button]]\ncontrol = \"key-p\"\naction = \"sunlight\"\n");
+    mapped.run(5);
+    mapped.push({'p'});
+    mapped.run(5);
+    EXPECT_EQ(mapped.sample.presses.sunlight, 1U) << "a steering file may put it elsewhere";
+}
+
 TEST(WindowSteering, ThePointerTurnsExactlyAsFarAsItMoved) {
     for (const int pixels : {1, 7, 50, 100}) {
         WindowRig rig;

@@ -464,6 +464,8 @@ TEST_F(WalkFile, AnOldOneStillOpens) {
     EXPECT_EQ(read->textures.size(), 1U);
     EXPECT_EQ(read->provenance.sources, std::vector<std::string>{"yard.obj"});
     EXPECT_EQ(read->provenance.quality, "draft");
+    ASSERT_EQ(read->effects.size(), static_cast<std::size_t>(effect_count)) << "of those that it did not know, too";
+    EXPECT_FALSE(read->effects.back().called_for);
     ASSERT_TRUE(write_walk(file, *read).ok());
     ASSERT_TRUE(read_walk(file, &again).ok());
     EXPECT_EQ(old.hash, again.hash);

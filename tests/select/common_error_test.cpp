@@ -306,6 +306,20 @@ TEST(CommonError, ShownFormsStayWithinTheErrorWhileTheEyeTrembles) {
     EXPECT_LT(with, 0.2 * without);
 }
 
+TEST(CommonError, BelowWhatIsThereIsToldInTheCut) {
+    for_frames(40, 30, [&](Scene& s, Random&) {
+        const bool has_it = s.run("curve-accuracy", 0, 0.01).worst_weighted_rad <= 0.01F;
+        EXPECT_EQ(s.cut.guarantee, has_it ? rt::Guarantee::kept : rt::Guarantee::no_form);
+        EXPECT_EQ(s.run("curve-accuracy", 0, 0).guarantee, rt::Guarantee::none) << "nothing was asked for";
+        for (prepare::Choice& choice : s.frame.choices) choice.error_rad += 0.01F;  // nothing is exact
+        for (prepare::Candidate& candidate : s.frame.candidates) candidate.importance = 1;
+        const Cut& cut = s.run("curve-accuracy", 0, 0.009);
+        EXPECT_EQ(cut.guarantee, rt::Guarantee::no_form);
+        EXPECT_EQ(check_legal(s.frame, cut), "") << "the best that is there is drawn";
+        EXPECT_FALSE(cut.items.empty());
+    });
+}
+
 TEST(CommonError, OddErrorsAndCostsEndAndStayLegal) {
     for (const float bad : {0.0F, std::nanf(""), static_cast<float>(infinity), -1.0F}) {
         for_frames(40, 20, [&](Scene& s, Random&) {

@@ -73,6 +73,24 @@ TEST(GuaranteeWalk, EveryRecordSaysWhatWasPromisedAndReached) {
     }
 }
 
+TEST(GuaranteeWalk, ASelectorByAccuracyAlonePromisesWhatWasAskedOfIt) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(20);
+    request.rest_after_ms = 0;
+    request.in_frame_check = false;  // it has no budget, and here all the time it takes
+    request.selector = "curve-accuracy";
+    request.accuracy = 400;
+    for (const rt::FrameRecord& r : test::walk(request).records) {
+        EXPECT_EQ(r.guaranteed_accuracy, 400) << r.frame;
+        EXPECT_EQ(r.guarantee, Guarantee::kept) << r.frame;
+        EXPECT_GE(r.reached_accuracy, 400) << r.frame;
+    }
+    request.accuracy = 0;
+    for (const rt::FrameRecord& r : test::walk(request).records) EXPECT_EQ(r.guarantee, Guarantee::none) << r.frame;
+    request.selector = "threshold";
+    request.accuracy = 400;  // stops there, and promises nothing
+    for (const rt::FrameRecord& r : test::walk(request).records) EXPECT_EQ(r.guarantee, Guarantee::none) << r.frame;
+}
+
 TEST(GuaranteeWalk, IsReachedByCapturedCutsAndBrokenOnlyWhereNoCutFits) {
     int kept = 0, broken = 0;
     const auto model = model::read_walk(test::Forest::get().model_file, nullptr);

@@ -86,7 +86,8 @@ std::string budget_text(const Comparison& comparison);
 
 /// Whether the page could be written to `dir` now. Call it before the walks.
 Result<void> probe_compare_page(const std::string& dir);
-/// DIR/index.html: triangles, accuracy and SNR picture by picture, a chart each; and DIR/pictures.csv.
+/// DIR/index.html: triangles, accuracy and SNR picture by picture, a chart each; the charts alone as DIR/pictures.svg; and
+/// DIR/pictures.csv.
 Result<void> write_compare_page(const std::string& dir, const Comparison& comparison);
 
 }  // namespace surefoot::accuracy

@@ -28,20 +28,44 @@ constexpr std::array<Shown, 3> shown = {{
     {"SNR, dB", "", [](const report::PictureFigures& p) { return p.snr_db; }, false},
 }};
 
+constexpr double strip_width = 960, strip_height = 180;
+
+/// Inline; empty where every picture equals full detail.
 std::string chart_of(const ComparedSelector& of, const Shown& what, double rate_hz) {
     report::TimeChart chart;
     chart.label = what.label;
     chart.unit = what.unit;
     chart.log = what.log;
-    chart.height = 180;
+    chart.width = strip_width;
+    chart.height = strip_height;
     for (const report::PictureFigures& p : of.pictures) {
         const double value = what.value(p);
         if (!std::isfinite(value)) continue;
         chart.time_s.push_back(static_cast<double>(p.frame) / rate_hz);
         chart.value.push_back(value);
     }
-    if (chart.value.empty()) return fmt::format("<p>{}: every picture equals full detail.</p>\n", what.label);
-    return fmt::format("<h3>{}</h3>\n{}", what.label, report::time_chart(chart));
+    return chart.value.empty() ? std::string() : report::time_chart(chart);
+}
+
+/// All charts below each other, as an SVG of its own.
+std::string chart_file_of(const Comparison& c) {
+    constexpr double title_height = 22;
+    std::string charts;
+    double y = 8;
+    for (const ComparedSelector& s : c.selectors)
+        for (const Shown& what : shown) {
+            const std::string chart = chart_of(s, what, c.rate_hz);
+            charts += report::text_at(
+                10, y + 14, "note",
+                fmt::format("{}: {}{}", s.selector, what.label, chart.empty() ? ". Every picture equals full detail." : ""));
+            y += title_height;
+            if (chart.empty()) continue;
+            charts += fmt::format("<svg y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\"{}", y, strip_width, strip_height,
+                                  chart.substr(std::string_view("<svg").size()));
+            y += strip_height;
+        }
+    return report::stand_alone(
+        report::open_chart(strip_width, y + 8, "Pictures of a comparison") + charts + report::close_chart(), false);
 }
 
 std::string body_of(const Comparison& c) {
@@ -51,9 +75,15 @@ std::string body_of(const Comparison& c) {
         report::escaped(c.model), c.pictures, c.width, c.height, c.rate_hz, budget_text(c));
     for (const ComparedSelector& s : c.selectors) {
         out += fmt::format("<h2>{}</h2>\n", report::escaped(s.selector));
-        for (const Shown& what : shown) out += chart_of(s, what, c.rate_hz);
+        for (const Shown& what : shown) {
+            const std::string chart = chart_of(s, what, c.rate_hz);
+            out += chart.empty() ? fmt::format("<p>{}: every picture equals full detail.</p>\n", what.label)
+                                 : fmt::format("<h3>{}</h3>\n{}", what.label, chart);
+        }
     }
-    return out + "<p>Pictures without error have no accuracy and no SNR, and leave gaps. All figures are in pictures.csv.</p>\n";
+    return out +
+           "<p>Pictures without error have no accuracy and no SNR, and leave gaps. All figures are in pictures.csv, and these "
+           "charts in pictures.svg.</p>\n";
 }
 
 std::string csv_of(const Comparison& c) {
@@ -67,13 +97,17 @@ std::string csv_of(const Comparison& c) {
 
 }  // namespace
 
-Result<void> probe_compare_page(const std::string& dir) { return FileSet::probe(dir, {"index.html", "pictures.csv"}); }
+Result<void> probe_compare_page(const std::string& dir) {
+    return FileSet::probe(dir, {"index.html", "pictures.csv", "pictures.svg"});
+}
 
 Result<void> write_compare_page(const std::string& dir, const Comparison& comparison) {
     auto written = FileSet::create(dir);
     if (!written) return written.error();
-    const std::array<std::pair<std::string_view, std::string>, 2> files = {
-        {{"index.html", report::page("Surefoot: a comparison", body_of(comparison))}, {"pictures.csv", csv_of(comparison)}}};
+    const std::array<std::pair<std::string_view, std::string>, 3> files = {
+        {{"index.html", report::page("Surefoot: a comparison", body_of(comparison))},
+         {"pictures.csv", csv_of(comparison)},
+         {"pictures.svg", chart_file_of(comparison)}}};
     for (const auto& [name, text] : files)
         if (auto ok = written->add(name, text); !ok) return ok;
     return written->commit();

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "render/select/registry.hpp"
 #include "rt/base/file.hpp"
 #include "tools/report/report.hpp"
 #include "tools/report/style.hpp"
@@ -34,6 +35,11 @@ std::string from_to(const std::string& now, const std::string& more) {
     return now == more ? now : fmt::format("{} → <b>{}</b>", now, more);
 }
 
+bool estimates_gain(const std::string& selector) {
+    const auto entry = select::selector_named(selector);
+    return entry && (*entry)->by_value;
+}
+
 std::string one_more_ms_of(const AccuracyRun& run) {
     if (run.one_more_ms.empty()) return {};
     std::string out = fmt::format(
@@ -41,19 +47,25 @@ std::string one_more_ms_of(const AccuracyRun& run) {
         "place: this is what a budget of {:.1f} ms shows instead.</p>\n<div class=\"card "
         "scroll\"><table>\n<tr><th>selector</th><th>frame p50, ms</th><th>p99, "
         "ms</th><th>worst accuracy, rad⁻¹</th><th>mean accuracy, rad⁻¹</th><th>PSNR, dB</th><th>FLIP</th><th>value, "
-        "%</th></tr>\n",
+        "%</th><th>more value, %</th><th>as estimated</th></tr>\n",
         run.rate_hz, run.working_ms, run.working_ms + 1);
     const auto ms = [](double time_ms) { return fmt::format("{:.2f}", time_ms); };
     for (const OneMoreMs& m : run.one_more_ms)
-        out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                           report::escaped(m.now.selector), from_to(ms(m.now.frame_ms_p50), ms(m.more.frame_ms_p50)),
-                           from_to(ms(m.now.frame_ms_p99), ms(m.more.frame_ms_p99)),
-                           from_to(per_rad(m.now.accuracy_worst), per_rad(m.more.accuracy_worst)),
-                           from_to(per_rad(m.now.accuracy_mean), per_rad(m.more.accuracy_mean)),
-                           from_to(decibels_of(m.now), decibels_of(m.more)),
-                           from_to(fmt::format("{:.4f}", m.now.flip), fmt::format("{:.4f}", m.more.flip)),
-                           from_to(fmt::format("{:.2f}", 100 * m.now.value), fmt::format("{:.2f}", 100 * m.more.value)));
-    return out + "</table></div>\n";
+        out += fmt::format(
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>"
+            "<td>{:.2f}</td><td>{}</td></tr>\n",
+            report::escaped(m.now.selector), from_to(ms(m.now.frame_ms_p50), ms(m.more.frame_ms_p50)),
+            from_to(ms(m.now.frame_ms_p99), ms(m.more.frame_ms_p99)),
+            from_to(per_rad(m.now.accuracy_worst), per_rad(m.more.accuracy_worst)),
+            from_to(per_rad(m.now.accuracy_mean), per_rad(m.more.accuracy_mean)),
+            from_to(decibels_of(m.now), decibels_of(m.more)),
+            from_to(fmt::format("{:.4f}", m.now.flip), fmt::format("{:.4f}", m.more.flip)),
+            from_to(fmt::format("{:.2f}", 100 * m.now.value), fmt::format("{:.2f}", 100 * m.more.value)),
+            100 * (m.more.value - m.now.value),
+            estimates_gain(m.now.selector) ? fmt::format("{:.2f}", 100 * m.now.estimated_gain) : "–");
+    return out +
+           "</table></div>\n<p class=\"sub\"><b>As estimated</b>: what a frame's record says before the millisecond is "
+           "spent. Selectors that do not go by value alone have no estimate.</p>\n";
 }
 
 std::string changes_of(const AccuracyRun& run) {
@@ -183,6 +195,7 @@ Json json_of(const AccuracyPoint& p) {
             {"ssim", finite(p.ssim)},
             {"flip", finite(p.flip)},
             {"value", finite(p.value)},
+            {"estimated_gain", finite(p.estimated_gain)},
             {"triangles", finite(p.triangles)},
             {"cost_us", finite(p.cost_us)},
             {"frames", p.frames},

@@ -6,10 +6,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <thread>
 
 #include "render/engine.hpp"
-#include "render/measure/calibrate.hpp"
 #include "render/measure/flip.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "render/model/walk_file.hpp"
@@ -18,7 +16,6 @@
 #include "tools/report/report.hpp"
 #include "tools/walk/frame_share.hpp"
 #include "tools/walk/path_source.hpp"
-#include "tools/walk/state.hpp"
 
 namespace surefoot::accuracy {
 
@@ -132,7 +129,11 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
         point.value += (station.prepared.full_value > 0 ? cut.value / station.prepared.full_value : 1) / n;
         std::vector<double> ms;
         ms.reserve(static_cast<std::size_t>(repeats));
-        for (int i = 0; i < repeats; ++i) ms.push_back(engine.submit(station.pose, limits).finished_us * 1e-3);
+        for (int i = 0; i < repeats; ++i) {
+            const SubmitReport report = engine.submit(station.pose, limits);
+            ms.push_back(report.finished_us * 1e-3);
+            if (i == 0) point.estimated_gain += report.one_more_ms / n;
+        }
         all_ms.insert(all_ms.end(), ms.begin(), ms.end());
         frame_ms.push_back(quantile_of(ms, 0.5));
         if (auto ok = compare(station, point, sums); !ok) return ok.error();
@@ -156,29 +157,12 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
 
 Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, model::Model model, std::uint64_t model_hash,
                                             EngineOptions options, AccuracyRun& run) {
-    const auto backend = gl::backend_named(request.backend);
-    if (!backend) return backend.error();
-    if (!(*backend)->draws())
-        return Error{"--backend " + request.backend, "This backend draws no pictures to compare",
-                     "Use one of: " + gl::drawing_backends(), ErrorKind::misuse};
-    options.device.kind = (*backend)->kind;
-    options.device.viewport = request.viewport();
-    options.device.rasterisers = request.rasterisers;
-    options.prepare.workers =
-        request.workers > 0 ? request.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    options.in_frame_check = false;
     options.benefit = request.benefit;
-    options.hysteresis = 1;  // places are apart: none remembers another
-    std::string note;
-    const std::string state = walk::state_directory(request.state_dir);
-    auto table = walk::load_costs(state, "", note);
-    if (!table) return table.error();
-    auto costs = walk::fitted_costs(state, *table, {model_hash, request.width, request.height, request.backend});
-    if (!costs) return costs.error();
-    auto engine = Engine::open(std::move(model), *costs, options);
-    if (engine) run.machine = measure::machine_identity((*engine)->device().renderer(), request.rasterisers);
-    run.uncalibrated = note;
-    return engine;
+    auto opened = open_engine_of_places(request, std::move(model), model_hash, options);
+    if (!opened) return opened.error();
+    run.machine = std::move(opened->machine);
+    run.uncalibrated = std::move(opened->uncalibrated);
+    return std::move(opened->engine);
 }
 
 }  // namespace
@@ -320,11 +304,12 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
 
     Sweep sweep{engine, std::vector<Station>(request.poses), std::max(1, request.repeats)};
     std::vector<double> full_ms;
+    const std::vector<Pose> poses = poses_along(chosen->path, request.poses);
     for (std::uint32_t i = 0; i < request.poses; ++i) {
         if (progress.stopped()) return Error{request.model_file, "The sweep was stopped by the user", "", ErrorKind::stopped};
         progress.update("full detail", static_cast<double>(i) / request.poses);
         Station& station = sweep.stations[i];
-        station.pose = sample_path(chosen->path, chosen->path.duration_s() * (i + 0.5) / request.poses);
+        station.pose = poses[i];
         full_ms.push_back(sweep.time_full(station, engine.full_detail(station.pose)));
         auto image = engine.device().read_pixels();
         if (!image) return image.error();

@@ -25,6 +25,8 @@ struct BakeArguments {
     std::vector<std::string> in;
     std::string out, quality = "draft", state;
     double level_ratio = 0;
+    model::SunTime sun;
+    CLI::Option* sun_hour = nullptr;
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     bool allow_incomplete = false, whole_objects = false, json = false;
 };
@@ -88,6 +90,10 @@ int run_bake(const BakeArguments& a, const Context& context) {
     if (std::filesystem::path(a.out).extension() != ".walk") {
         return misuse({"-o " + a.out, "The output's name does not end in .walk", "Name a file MODEL.walk", ErrorKind::misuse});
     }
+    if (a.sun_hour->count() > 0 && model::towards_sun(a.sun).y <= 0) {
+        return misuse({fmt::format("--sun-hour {:g}", a.sun.hour), "The sun is below the horizon then",
+                       "Name another hour (12 is noon), --sun-day or --latitude", ErrorKind::misuse});
+    }
     if (auto ok = probe_writable(a.out); !ok) return fail(ok.error());
     Progress progress = terminal_progress(context);
     StageTimes times;
@@ -105,6 +111,7 @@ int run_bake(const BakeArguments& a, const Context& context) {
     options.quality = a.quality == "full" ? bake::Quality::full : bake::Quality::draft;
     options.whole_objects = a.whole_objects;
     options.level_ratio = a.level_ratio * 0.01;
+    if (a.sun_hour->count() > 0) options.sun = a.sun;
     options.workers = settings->values.workers;
     options.frame_us = 1e6 / settings->values.rate_hz;
     options.costs = &*costs;
@@ -159,6 +166,18 @@ void add_bake(CLI::App& app, Context& context) {
         ->check(number_within(30, 97, "%"));
     c->add_flag("--whole-objects", a->whole_objects,
                 "Cut an object into pieces only if it has too many triangles for one frame, and not because it is long");
+    a->sun_hour = c->add_option("--sun-hour", a->sun.hour,
+                                "Hour of the sun's own time, 12 is noon: where it shines from. Default: as the scene's distant "
+                                "light does, else from the south-east, 53 degrees high. North is -Z")
+                      ->check(number_within(0, 24, "h"));
+    c->add_option("--sun-day", a->sun.day, "Day of the year for --sun-hour; 172 is 21 June")
+        ->check(number_within(1, 365, ""))
+        ->capture_default_str()
+        ->needs(a->sun_hour);
+    c->add_option("--latitude", a->sun.latitude_deg, "Degrees north of the equator for --sun-hour")
+        ->check(number_within(-90, 90, "degrees"))
+        ->capture_default_str()
+        ->needs(a->sun_hour);
     add_setting(c, a->settings, "--workers", "workers", "Threads; 0: one per core. The result does not depend on it.");
     add_setting(c, a->settings, "--rate", "rate_hz", "Frame rate; no item of the model may cost more than 1/16 of a frame.");
     c->add_flag("--allow-incomplete", a->allow_incomplete,

@@ -222,7 +222,8 @@ void add_compare(CLI::App& app, Context& context) {
         ->type_name("KEY=VALUE")
         ->excludes("--selector");
     add_resource(c, a);
-    c->add_option("-o,--out", a->out, "Folder for a page of every compared picture, and pictures.csv")->check(names_something());
+    c->add_option("-o,--out", a->out, "Folder for a page of every compared picture, pictures.csv and pictures.svg")
+        ->check(names_something());
     c->add_option("--seconds", r.seconds, "Length of each walk in seconds (else as the path is long)")
         ->check(number_within(0.001, 1e6, "s"));
     c->add_option("--frames", r.frames, "Length of each walk in frames, instead of --seconds")

@@ -1,21 +1,58 @@
-// surefoot effects: the table of what a scene calls for and what it does not, with the reasons.
+// surefoot effects: what a scene calls for and what it does not, with the reasons; with --report, what each costs and shows.
 #include <fmt/format.h>
 
 #include "render/effects/effects.hpp"
 #include "render/model/walk_file.hpp"
+#include "tools/accuracy/effect_worth.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
+#include "tools/cli/walk_settings.hpp"
 #include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
 namespace {
 struct EffectsArguments {
-    std::string file;
+    accuracy::PlacesRequest request;
+    std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
+    std::string report;
     bool json = false;
 };
 
+int run_report(EffectsArguments& a, const Context& context) {
+    const auto read = read_settings(*a.settings);
+    if (!read) return misuse(read.error());
+    a.request.width = read->values.width;
+    a.request.height = read->values.height;
+    a.request.lift_m = read->values.lift_m;
+    a.request.rasterisers = read->values.rasterisers;
+    gl::prepare_process(a.request.rasterisers);
+    if (auto ok = accuracy::probe_effects_page(a.report); !ok) return fail(ok.error());
+    auto report = accuracy::measure_effects(a.request, terminal_progress(context));
+    end_progress(context);
+    if (!report) return fail(report.error());
+    if (auto ok = accuracy::write_effects_page(a.report, *report); !ok) return fail(ok.error());
+    if (a.json) {
+        fmt::print("{}", accuracy::effects_json(*report));
+        return exit_success;
+    }
+    const report::Columns columns(
+        {{"without", 14}, {"places", -7}, {"with ms", -9}, {"without ms", -11}, {"PSNR dB", -8}, {"FLIP", -7}});
+    fmt::print("{}\n", columns.heading());
+    const auto row = [&](const std::string& name, const std::string& places, const accuracy::WithAndWithout& w) {
+        fmt::print("{}\n", columns.row({name, places, fmt::format("{:.2f}", w.with_ms), fmt::format("{:.2f}", w.without_ms),
+                                        w.psnr_db < report::max_psnr_db ? fmt::format("{:.1f}", w.psnr_db) : "equal",
+                                        fmt::format("{:.4f}", w.flip)}));
+    };
+    for (const accuracy::EffectWorth& e : report->effects)
+        if (e.shown_at > 0) row(e.name, std::to_string(e.shown_at), e.worth);
+    row("all: bare", std::to_string(report->poses), report->bare);
+    fmt::print("page: {}/index.html\n", a.report);
+    return exit_success;
+}
+
 int run_effects(const EffectsArguments& a) {
-    auto m = model::read_walk(a.file);
+    auto m = model::read_walk(a.request.model_file);
     if (!m) return fail(m.error());
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     const report::Columns columns({{"effect", 14}, {"called for", 11}, {"triangles", -12}, {"reason", 0, 2}});
@@ -36,7 +73,7 @@ int run_effects(const EffectsArguments& a) {
             }
         }
     }
-    if (a.json) print_json({{"model", a.file}, {"effects", list}});
+    if (a.json) print_json({{"model", a.request.model_file}, {"effects", list}});
     return exit_success;
 }
 }  // namespace
@@ -44,9 +81,33 @@ int run_effects(const EffectsArguments& a) {
 void add_effects(CLI::App& app, Context& context) {
     auto a = std::make_shared<EffectsArguments>();
     CLI::App* c = add_command(app, "effects", "List the effects of a model with the reason for each; unused effects cost nothing",
-                              "surefoot effects town.walk", a->json);
-    c->add_option("model", a->file, "The .walk model")->required();
-    c->callback([&context, a] { context.run = [a] { return run_effects(*a); }; });
+                              "surefoot effects town.walk\n  surefoot effects town.walk --report effects", a->json);
+    accuracy::PlacesRequest& r = a->request;
+    c->add_option("model", r.model_file, "The .walk model")->required();
+    CLI::Option* report = c->add_option("--report", a->report,
+                                        "Folder for a page: full detail with and without each effect, its time and its pictures")
+                              ->check(names_something());
+    c->add_option("--path", r.path_file, "CSV file of the path along which places are taken (else MODEL.path.csv, else a tour)")
+        ->needs(report);
+    c->add_option("--poses", r.poses, "Number of places along the path, 1 to 256")
+        ->check(whole_number_within(1, 256))
+        ->capture_default_str()
+        ->needs(report);
+    c->add_option("--repeats", r.repeats, "Timed repetitions per place; the median is used")
+        ->check(whole_number_within(1, 100))
+        ->capture_default_str()
+        ->needs(report);
+    c->add_option("--size", a->settings->size, "Size of the picture in pixels [1280x720]")->needs(report);
+    add_setting(c, a->settings, "--lift", "lift_m");
+    c->add_option("--backend", r.backend, "Backend that draws: " + gl::drawing_backends())
+        ->check(drawing_backend())
+        ->capture_default_str()
+        ->needs(report);
+    add_setting(c, a->settings, "--rasterisers", "rasterisers", "Threads of a software renderer; 0: the measured default.");
+    for (const char* name : {"--lift", "--rasterisers"}) c->get_option(name)->needs(report);
+    c->add_option("--state", r.state_dir, "Folder of the calibrated cost table")->needs(report);
+    c->callback(
+        [&context, a] { context.run = [a, &context] { return a->report.empty() ? run_effects(*a) : run_report(*a, context); }; });
 }
 
 }  // namespace surefoot::cli

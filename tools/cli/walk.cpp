@@ -162,6 +162,9 @@ void add_comparisons(CLI::App* c, WalkArguments& a) {
                 "Do not start if real time lacks anything: SCHED_FIFO, locked memory, an isolated core, thread placement or a "
                 "cost table");
     c->add_flag("--no-check", a.settings->no_check, "Disable the in-frame check (for comparison)");
+    c->add_flag(
+        "--no-sunlight", a.settings->no_sunlight,
+        "Colours as they are, without sun and sky light; key L of a window switches it, and the action sunlight of any device");
     c->add_flag("--no-occlusion", a.settings->no_occlusion, "Disable occlusion culling (for comparison)");
     c->add_flag("--no-correction", a.no_correction, "Disable the online correction of predicted costs (for comparison)");
     c->add_flag("--control", a.request.control,

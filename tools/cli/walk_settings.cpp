@@ -84,6 +84,7 @@ Result<config::Configuration> read_settings(const SettingArguments& a) {
     if (a.no_fifo) c.values.fifo = false;
     if (a.no_check) c.values.in_frame_check = false;
     if (a.no_occlusion) c.values.occlusion = false;
+    if (a.no_sunlight) c.values.sunlight = false;
     return c;
 }
 

@@ -19,7 +19,7 @@ struct SettingArguments {
         std::string flag, key, text;
     };
     std::vector<Setting> values;  ///< in the order given
-    bool no_fifo = false, no_check = false, no_occlusion = false;
+    bool no_fifo = false, no_check = false, no_occlusion = false, no_sunlight = false;
 };
 
 using FlagsAndKeys = std::initializer_list<std::pair<const char*, const char*>>;

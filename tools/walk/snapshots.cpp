@@ -33,7 +33,7 @@ SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std
 
 void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
                              rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
-                             std::span<const gl::DrawItem> culled) {
+                             std::span<const gl::DrawItem> culled, bool sunlight) {
     if (every_ == 0 || used_ == snapshots_.size()) return;
     if (frame % every_ != 0) {
         if ((frame + 1) % every_ == 0) remember_last(filter, drawn, culled);
@@ -48,6 +48,7 @@ void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pos
     snapshot.resolution = resolution;
     snapshot.filter = filter;
     snapshot.triangles = triangles;
+    snapshot.sunlight = sunlight;
     snapshot.items.assign(drawn.begin(), drawn.end());
     ++used_;
     if (every_ == 1 && used_ < snapshots_.size()) remember_last(filter, drawn, culled);
@@ -124,6 +125,7 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     if (engine.options().device.kind == gl::BackendKind::null) return out;  // nothing to look at
 
     engine.device().draws.plays();
+    engine.show_switchable(snapshot.sunlight);
     engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
@@ -167,6 +169,7 @@ Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::
         }
         progress.update("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
         const FrameSnapshot& snapshot = store.snapshots()[i];
+        engine.show_switchable(snapshot.sunlight);
         engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();

@@ -138,6 +138,7 @@ void WalkStages::rehearse(std::int64_t until_ns) {
         const prepare::PreparedFrame& set = prepared_.front();
         limit_.count(set);
         const FramePose newest = pose_source_.sample({0, due_ns, clock_.now_ns()});
+        engine_.show_switchable(shows_sunlight(newest));
         publish_rehearsed(newest, due_ns);
         const std::int64_t begun_ns = due_ns;
         due_ns += options_.period_ns;
@@ -210,6 +211,8 @@ void WalkStages::sample(rt::FrameRecord& record) {
 
 FrameTime WalkStages::frame_time(const rt::FrameRecord& record) const { return {path_slot_, record.due_ns, clock_.now_ns()}; }
 
+bool WalkStages::shows_sunlight(const FramePose& at) const { return request_.sunlight == (at.sunlight_presses % 2 == 0); }
+
 void WalkStages::take(const FramePose& from, rt::FrameRecord& record) {
     const Pose& pose = now_.pose = from.pose;
     record.eye = {pose.position.x, pose.position.y, pose.position.z};
@@ -217,6 +220,8 @@ void WalkStages::take(const FramePose& from, rt::FrameRecord& record) {
     record.input_stamp_ns = from.stamp_ns;
     record.input_reports = from.reports;
     record.stopped = from.stopped;
+    record.sunlight = shows_sunlight(from);
+    engine_.show_switchable(record.sunlight);
 }
 
 /// What came while the cut was chosen still counts, as far as the cut was made for it.
@@ -372,7 +377,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.refused_items = report_.refused_items;
     record.bought_us = static_cast<float>(report_.bought_us);
     record.accuracy = accuracy_of(report_.worst_error_rad);
-    record.guaranteed_accuracy = static_cast<float>(request_.min_accuracy);
+    record.guaranteed_accuracy = static_cast<float>(report_.promised_rad > 0 ? 1 / report_.promised_rad : 0);
     record.reached_accuracy = accuracy_of(report_.worst_weighted_rad);
     record.guarantee = report_.guarantee;
     record.binding_node = report_.worst_node;
@@ -394,7 +399,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     keep(record);
     const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
     snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.resolution, record.filter, record.triangles,
-                        engine_.drawn(), engine_.culled());
+                        engine_.drawn(), engine_.culled(), record.sunlight);
 }
 
 }  // namespace surefoot::walk

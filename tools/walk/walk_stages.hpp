@@ -92,6 +92,7 @@ private:
     [[nodiscard]] PrepareHints hints() const;
     void publish_rehearsed(const FramePose& newest, std::int64_t due_ns);
     void take(const FramePose& from, rt::FrameRecord& record);
+    [[nodiscard]] bool shows_sunlight(const FramePose& at) const;
     void latch(rt::FrameRecord& record);
     /// What the frames at this resolution have taught, as far as predictions are corrected. filtered: those that bought the
     /// second mip level.

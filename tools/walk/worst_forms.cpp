@@ -128,6 +128,7 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
     const std::uint32_t width = picture.width, height = picture.height;
     if (picture.walk.empty() || picture.full.empty()) return {};
     engine_.device().draws.plays();
+    engine_.show_switchable(snapshot.sunlight);
     const SquaredErrors wrong(picture.walk, picture.full, width, height);
     mse_ += picture.mse;
     const model::Model& model = engine_.model();

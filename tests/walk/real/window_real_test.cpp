@@ -2,6 +2,7 @@
 // pictures, are released with the focus, and end the walk. Skipped with the reason where there is no such server.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <condition_variable>
@@ -276,6 +277,44 @@ std::shared_ptr<const Path> second_of_path() {
     for (const PathSample& s : path->samples)
         if (s.time_s <= 1) cut.samples.push_back(s);
     return std::make_shared<const Path>(std::move(cut));
+}
+
+TEST_F(WindowWalk, LSwitchesTheSunOffAndOnWithinTwoFrames) {
+    if (visitor_ == nullptr) GTEST_SKIP() << no_visitor_;
+    walk::WalkRequest request = test::Forest::get().virtual_request(0);
+    request.may_leave = request.may_steer = true;
+    request.walking = rt::WalkingMode::fly;
+    test::ScreenPicture sunny, dark, again;
+    std::array<std::int64_t, 2> pressed_ns{};
+    const rt::RealClock clock;
+    const auto outcome = walk_in_window(request, [&](FramesSoFar& frames) {
+        using Frames = FramesSoFar::Frames;
+        const auto settled_picture = [&](bool sun, std::int64_t from_ns) {
+            EXPECT_TRUE(frames.wait(from_ns, [&](const Frames& f) { return f.size() > 20 && f.back().sunlight == sun; })) << sun;
+            return visitor_->look_at_screen();
+        };
+        visitor_->find_window();
+        visitor_->tap('w');  // leaves the path, and stands still
+        sunny = settled_picture(true, clock.now_ns());
+        for (const bool sun : {false, true}) {
+            pressed_ns[sun ? 1 : 0] = clock.now_ns();
+            visitor_->tap('l');
+            (sun ? again : dark) = settled_picture(sun, clock.now_ns());
+        }
+        visitor_->tap(symbol_escape);
+    });
+    ASSERT_TRUE(outcome.ok()) << outcome.error().text();
+    EXPECT_GT(different(sunny, dark), 500U) << "of 4800 pixels";
+    EXPECT_GT(different(dark, again), 500U);
+    EXPECT_EQ(outcome->summary.input.sunlight, 2U);
+    EXPECT_EQ(outcome->summary.guard_violations, 0U);
+    for (std::size_t press = 0; press < 2; ++press) {
+        const auto later = between(*outcome, pressed_ns[press], INT64_MAX);
+        std::size_t until = 0;
+        while (until < later.size() && later[until].sunlight != (press == 1)) ++until;
+        ASSERT_LT(until, later.size());
+        EXPECT_LE(until, 3U) << "two frames, and the one that was under way";
+    }
 }
 
 TEST_F(WindowWalk, AnyKeyProlongsItAPauseToo) {

@@ -1,0 +1,299 @@
+// Rays from each vertex, then bytes, then materials without the sun.
+#include "render/bake/openness.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <vector>
+
+namespace surefoot::bake {
+
+namespace {
+
+constexpr std::size_t rays = 24;
+constexpr double room_m = 3;      // what is nearer shades
+constexpr double lift_m = 0.02;   // off the surface that a vertex is on
+constexpr double inset_m = 0.05;  // from its border inwards, so that a corner does not start within its neighbour
+constexpr double min_up = 0.1;    // rays to the sky rise: what lies below the horizon is ground
+constexpr std::size_t max_places = 4;
+constexpr std::uint32_t task_vertices = 512;
+
+/// Spread evenly over a hemisphere about +Z, by the cosine.
+std::array<dvec3, rays> cosine_directions() {
+    constexpr double turn = std::numbers::pi * (3 - 2.2360679774997896);  // the golden angle
+    std::array<dvec3, rays> out;
+    for (std::size_t i = 0; i < rays; ++i) {
+        const double squared = (static_cast<double>(i) + 0.5) / rays, radius = std::sqrt(squared);
+        const double angle = turn * static_cast<double>(i);
+        out[i] = {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1 - squared)};
+    }
+    return out;
+}
+
+/// What a side of a surface sees: shares of the sky, and of its room, summed over places.
+struct Seen {
+    double sky = 0, room = 0;
+};
+
+/// Chains share their vertices: one array of the model, the parts over it, and where it stands.
+struct VertexRange {
+    std::uint32_t first = 0, count = 0;
+    std::vector<model::Index> parts;       ///< lit ones
+    std::vector<model::Index> placements;  ///< at most max_places
+    bool two_sided = false, all_places = true;
+};
+
+/// Where rays of a vertex begin, and which way its front looks. In the range's own frame.
+struct Start {
+    vec3 at{0.0F}, inwards{0.0F}, normal{0.0F};
+    bool used = false;
+};
+
+std::vector<VertexRange> ranges_of(const model::Model& model) {
+    std::map<std::uint32_t, VertexRange> by_first;
+    for (const model::Representation& rep : model.reps) {
+        for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+            const model::Part& part = model.parts[p];
+            const model::Material& material = model.materials[part.material];
+            if ((material.effects & model::effect_sun) == 0) continue;
+            VertexRange& range = by_first[part.first_vertex];
+            range.first = part.first_vertex;
+            range.count = std::max(range.count, part.vertex_count);
+            range.two_sided = range.two_sided || material.two_sided;
+            if (range.parts.empty() || range.parts.back() != p) range.parts.push_back(p);
+            if (range.placements.empty() || range.placements.back() != rep.placement) range.placements.push_back(rep.placement);
+        }
+    }
+    std::vector<VertexRange> ranges;
+    for (auto& [first, range] : by_first) {
+        for (std::vector<model::Index>* list : {&range.parts, &range.placements}) {
+            std::sort(list->begin(), list->end());
+            list->erase(std::unique(list->begin(), list->end()), list->end());
+        }
+        const std::size_t count = range.placements.size();
+        if (count > max_places) {
+            std::vector<model::Index> spread;
+            for (std::size_t i = 0; i < max_places; ++i) spread.push_back(range.placements[i * (count - 1) / (max_places - 1)]);
+            range.placements = std::move(spread);
+            range.all_places = false;
+        }
+        ranges.push_back(std::move(range));
+    }
+    return ranges;
+}
+
+/// Some vertices of a range.
+struct Task {
+    std::uint32_t range, from, to;
+};
+
+std::vector<Task> tasks_of(const std::vector<VertexRange>& ranges) {
+    std::vector<Task> tasks;
+    for (std::uint32_t r = 0; r < ranges.size(); ++r)
+        for (std::uint32_t from = 0; from < ranges[r].count; from += task_vertices)
+            tasks.push_back({r, from, std::min(ranges[r].count, from + task_vertices)});
+    return tasks;
+}
+
+class OpennessMaker {
+public:
+    OpennessMaker(model::Model& model, const RayTree& opaque, std::vector<VertexRange> ranges)
+        : model_(model),
+          opaque_(opaque),
+          ranges_(std::move(ranges)),
+          starts_(ranges_.size()),
+          directions_(cosine_directions()),
+          far_m_(model.nodes.empty() ? 0 : 2 * model.nodes[0].box.diagonal()) {}
+
+    /// Of all vertices of a range: off each a little towards the middle of its triangles.
+    void find_starts(std::size_t r);
+    /// After find_starts() of its range.
+    void measure(const Task& task);
+    /// Counts vertices, and says whether anything is hidden.
+    [[nodiscard]] bool count_vertices(Openness& found) const;
+    /// Gives lit materials the effect, and closed parts one without the sun.
+    void change_materials(Openness& found);
+
+private:
+    static std::uint8_t hidden_byte(double seen) {
+        return static_cast<std::uint8_t>(std::lround(255 * std::clamp(1 - seen, 0.0, 1.0)));
+    }
+    static dmat3 cofactor(const dmat3& m) { return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])}; }
+    [[nodiscard]] bool is_closed(const model::Part& part) const;
+    [[nodiscard]] std::vector<bool> closed_parts() const;
+    void add_seen(const dvec3& at, const dvec3& normal, Seen& seen) const;
+
+    model::Model& model_;
+    const RayTree& opaque_;
+    std::vector<VertexRange> ranges_;
+    std::vector<std::vector<Start>> starts_;
+    std::array<dvec3, rays> directions_;
+    double far_m_;
+};
+
+void OpennessMaker::find_starts(std::size_t r) {
+    const VertexRange& range = ranges_[r];
+    std::vector<Start>& starts = starts_[r];
+    starts.resize(range.count);
+    std::vector<std::uint32_t> triangles(range.count, 0);
+    for (std::uint32_t v = 0; v < range.count; ++v) {
+        const model::Vertex& vertex = model_.vertices[range.first + v];
+        starts[v].at = {vertex.position[0], vertex.position[1], vertex.position[2]};
+        starts[v].normal = {vertex.normal[0], vertex.normal[1], vertex.normal[2]};
+    }
+    for (const model::Index p : range.parts) {
+        const model::Part& part = model_.parts[p];
+        for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) {
+            const std::uint32_t* corner = &model_.indices[part.first_index + i];
+            const vec3 middle = (starts[corner[0]].at + starts[corner[1]].at + starts[corner[2]].at) / 3.0F;
+            for (int k = 0; k < 3; ++k) {
+                starts[corner[k]].used = true;
+                starts[corner[k]].inwards += middle - starts[corner[k]].at;
+                ++triangles[corner[k]];
+            }
+        }
+    }
+    for (std::uint32_t v = 0; v < range.count; ++v)
+        if (starts[v].used) starts[v].inwards *= 0.1F / static_cast<float>(triangles[v]);
+}
+
+void OpennessMaker::measure(const Task& task) {
+    const VertexRange& range = ranges_[task.range];
+    for (std::uint32_t v = task.from; v < task.to; ++v) {
+        const Start& start = starts_[task.range][v];
+        if (!start.used) continue;
+        Seen front, back;
+        double places = 0;
+        for (const model::Index p : range.placements) {
+            const model::Placement& place = model_.placements[p];
+            const dmat3 linear(place.linear);
+            const dvec3 turned = (glm::determinant(linear) < 0 ? -1.0 : 1.0) * (cofactor(linear) * dvec3(start.normal));
+            const double length = glm::length(turned);
+            if (!(length > 0)) continue;  // faces that cancel each other: nothing is known, and nothing is hidden
+            const dvec3 inwards = linear * dvec3(start.inwards);
+            const double by = glm::length(inwards);
+            const dvec3 at = place.origin + linear * dvec3(start.at) + (by > inset_m ? inset_m / by : 1.0) * inwards;
+            add_seen(at, turned / length, front);
+            if (range.two_sided) add_seen(at, -turned / length, back);
+            ++places;
+        }
+        if (!(places > 0)) continue;
+        if (!range.two_sided) back = front;
+        std::uint8_t* hidden = model_.vertices[range.first + v].hidden;
+        hidden[0] = hidden_byte(front.sky / places);
+        hidden[1] = hidden_byte(back.sky / places);
+        hidden[2] = hidden_byte(front.room / places);
+        hidden[3] = hidden_byte(back.room / places);
+    }
+}
+
+void OpennessMaker::add_seen(const dvec3& at, const dvec3& normal, Seen& seen) const {
+    const dvec3 other = std::abs(normal.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
+    const dvec3 x = glm::normalize(glm::cross(other, normal)), y = glm::cross(normal, x);
+    const dvec3 from = at + lift_m * normal;
+    for (const dvec3& d : directions_) {
+        const dvec3 way = d.x * x + d.y * y + d.z * normal;
+        const double near_m = opaque_.nearest_hit_m({from, way, room_m});
+        seen.room += std::min(near_m, room_m) / room_m / rays;
+        const bool rises = way.y >= min_up;
+        if (rises && near_m < room_m) continue;
+        const dvec3 up = rises ? way : glm::normalize(dvec3(way.x, min_up, way.z));
+        if (!opaque_.is_blocked({from, up, far_m_})) seen.sky += 1.0 / rays;
+    }
+}
+
+bool OpennessMaker::count_vertices(Openness& found) const {
+    bool any_hidden = false;
+    for (std::size_t r = 0; r < ranges_.size(); ++r)
+        for (std::uint32_t v = 0; v < ranges_[r].count; ++v) {
+            if (!starts_[r][v].used) continue;
+            ++found.vertices;
+            for (const std::uint8_t share : model_.vertices[ranges_[r].first + v].hidden) any_hidden = any_hidden || share > 0;
+        }
+    return any_hidden;
+}
+
+bool OpennessMaker::is_closed(const model::Part& part) const {
+    const bool two_sided = model_.materials[part.material].two_sided;
+    for (std::uint32_t i = 0; i < part.index_count; ++i) {
+        const model::Vertex& v = model_.vertices[part.first_vertex + model_.indices[part.first_index + i]];
+        if (v.hidden[0] != 255 || (two_sided && v.hidden[1] != 255)) return false;
+    }
+    return part.index_count > 0;
+}
+
+/// By part. All parts of a chain with one material are closed, or none: what coincides is told apart by materials.
+std::vector<bool> OpennessMaker::closed_parts() const {
+    std::vector<bool> closed(model_.parts.size(), false);
+    for (const VertexRange& range : ranges_) {
+        if (!range.all_places) continue;
+        std::map<model::Index, bool> by_material;
+        for (const model::Index p : range.parts) {
+            bool& all = by_material.try_emplace(model_.parts[p].material, true).first->second;
+            all = all && is_closed(model_.parts[p]);
+        }
+        for (const model::Index p : range.parts) closed[p] = by_material[model_.parts[p].material];
+    }
+    return closed;
+}
+
+void OpennessMaker::change_materials(Openness& found) {
+    const std::vector<bool> closed = closed_parts();
+    for (const model::Node& node : model_.nodes) {
+        if (node.child_count > 0) continue;
+        const model::Representation& full = model_.reps[node.first_rep + node.rep_count - 1];
+        for (model::Index p = full.first_part; p < full.first_part + full.part_count; ++p) {
+            if ((model_.materials[model_.parts[p].material].effects & model::effect_sun) == 0) continue;
+            found.triangles += model_.parts[p].index_count / 3;
+            if (closed[p]) found.closed += model_.parts[p].index_count / 3;
+        }
+    }
+    for (model::Material& material : model_.materials)
+        if ((material.effects & model::effect_sun) != 0) material.effects |= model::effect_openness;
+    std::map<model::Index, model::Index> without_sun;
+    for (model::Index p = 0; p < closed.size(); ++p) {
+        if (!closed[p]) continue;
+        const model::Index from = model_.parts[p].material;
+        const auto [copy, is_new] = without_sun.try_emplace(from, static_cast<model::Index>(model_.materials.size()));
+        if (is_new) {
+            model::Material material = model_.materials[from];
+            material.effects &= ~model::EffectMask{model::effect_sun};
+            model_.materials.push_back(material);
+            found.copies.emplace_back(copy->second, from);
+        }
+        model_.parts[p].material = copy->second;
+    }
+    for (model::Representation& rep : model_.reps) {
+        rep.effects = 0;
+        for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p)
+            rep.effects |= model_.materials[model_.parts[p].material].effects;
+    }
+}
+
+}  // namespace
+
+std::size_t openness_steps(const model::Model& model) { return tasks_of(ranges_of(model)).size(); }
+
+Openness measure_openness(model::Model& model, const RayTree& opaque, const ForAll& for_all, const std::function<bool()>& step) {
+    Openness found;
+    std::vector<VertexRange> ranges = ranges_of(model);
+    const std::vector<Task> tasks = tasks_of(ranges);
+    const std::size_t count = ranges.size();
+    OpennessMaker maker(model, opaque, std::move(ranges));
+    for_all(count, [&](std::size_t r) { maker.find_starts(r); });
+    std::atomic<bool> go{true};
+    for_all(tasks.size(), [&](std::size_t t) {
+        if (!go) return;
+        maker.measure(tasks[t]);
+        if (!step()) go = false;
+    });
+    if (!go || !maker.count_vertices(found)) return found;
+    found.measured = true;
+    maker.change_materials(found);
+    return found;
+}
+
+}  // namespace surefoot::bake

@@ -1,0 +1,23 @@
+// Effect: light by what a vertex sees, as baked. Where it sees no sky, a room's light takes the place of sun and sky; what is
+// near it shades it. A little sky is enough for the sun: a street is no room.
+#include "render/effects/modules.hpp"
+
+namespace surefoot::effects {
+
+constexpr EffectModule openness{
+    .bit = model::effect_openness,
+    .name = "openness",
+    .help = "no sun where no sky is seen, and shade in corners, baked at the vertices",
+    .requested_by = "a lit mesh that something hides from the sky, in a bake of quality full",
+    .vertex_declarations = "in vec4 hidden;\n",
+    .vertex_code =
+        "    vec2 seen = 1.0 - (turned ? hidden.yw : hidden.xz);\n"
+        "    vec3 room = vec3(0.78, 0.76, 0.72) + (0.05 * n.x + 0.10 * n.y - 0.03 * n.z);\n"
+        "    lit = mix(room, lit, min(1.0, 4.0 * seen.x)) * (0.55 + 0.45 * seen.y);\n",
+    .fragment_declarations = "",
+    .fragment_code = "",
+    .is_light = true,
+};
+const EffectModule openness_module = openness;
+
+}  // namespace surefoot::effects

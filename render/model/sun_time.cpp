@@ -1,0 +1,20 @@
+// The sun's direction from its declination and its hour angle.
+#include "render/model/sun_time.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace surefoot::model {
+
+dvec3 towards_sun(const SunTime& time) {
+    constexpr double degree = std::numbers::pi / 180;
+    const double declination = 23.45 * degree * std::sin(2 * std::numbers::pi * (284 + time.day) / 365);
+    const double hour_angle = 15 * degree * (time.hour - 12), latitude = time.latitude_deg * degree;
+    const double to_equator = std::cos(declination) * std::cos(hour_angle);  // in the meridian's plane, across the axis
+    const double up = std::sin(latitude) * std::sin(declination) + std::cos(latitude) * to_equator;
+    const double south = std::sin(latitude) * to_equator - std::cos(latitude) * std::sin(declination);
+    const double west = std::cos(declination) * std::sin(hour_angle);
+    return glm::normalize(dvec3(-west, up, south));
+}
+
+}  // namespace surefoot::model
