@@ -117,8 +117,8 @@ struct Painter {
         if ((material.effects & model::effect_openness) != 0) {
             const float sky = 1 - static_cast<float>(v.hidden[turned ? 1 : 0]) / 255.0F;
             const float near = 1 - static_cast<float>(v.hidden[turned ? 3 : 2]) / 255.0F;
-            const vec3 room = vec3(0.78F, 0.76F, 0.72F) + (0.05F * n.x + 0.10F * n.y - 0.03F * n.z);
-            by_light = glm::mix(room, by_light, std::min(1.0F, 4.0F * sky)) * (0.55F + 0.45F * near);
+            const vec3 room = vec3(0.98F, 0.95F, 0.91F) + (0.06F * n.x + 0.12F * n.y - 0.04F * n.z);
+            by_light = glm::mix(room, by_light, std::min(1.0F, 4.0F * sky)) * (0.6F + 0.4F * near);
         }
         return {vec3(colour) * by_light, colour.a};
     }

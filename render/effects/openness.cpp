@@ -12,8 +12,8 @@ constexpr EffectModule openness{
     .vertex_declarations = "in vec4 hidden;\n",
     .vertex_code =
         "    vec2 seen = 1.0 - (turned ? hidden.yw : hidden.xz);\n"
-        "    vec3 room = vec3(0.78, 0.76, 0.72) + (0.05 * n.x + 0.10 * n.y - 0.03 * n.z);\n"
-        "    lit = mix(room, lit, min(1.0, 4.0 * seen.x)) * (0.55 + 0.45 * seen.y);\n",
+        "    vec3 room = vec3(0.98, 0.95, 0.91) + (0.06 * n.x + 0.12 * n.y - 0.04 * n.z);\n"
+        "    lit = mix(room, lit, min(1.0, 4.0 * seen.x)) * (0.6 + 0.4 * seen.y);\n",
     .fragment_declarations = "",
     .fragment_code = "",
     .is_light = true,
