@@ -38,13 +38,14 @@ std::string chart_of(const ComparedSelector& of, const Shown& what, double rate_
     chart.log = what.log;
     chart.width = strip_width;
     chart.height = strip_height;
-    for (const report::PictureFigures& p : of.pictures) {
+    bool any = false;
+    for (const report::PictureFigures& p : of.pictures) {  // without a value, too: all charts span the same time
         const double value = what.value(p);
-        if (!std::isfinite(value)) continue;
+        any = any || std::isfinite(value);
         chart.time_s.push_back(static_cast<double>(p.frame) / rate_hz);
         chart.value.push_back(value);
     }
-    return chart.value.empty() ? std::string() : report::time_chart(chart);
+    return any ? report::time_chart(chart) : std::string();
 }
 
 /// All charts below each other, as an SVG of its own.
