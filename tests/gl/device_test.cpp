@@ -275,6 +275,26 @@ TEST_F(DeviceTest, only_the_scenes_programs_are_compiled) {
     EXPECT_TRUE(device_->program_text(model::effect_texture).empty());
 }
 
+TEST_F(DeviceTest, what_is_hidden_from_the_sky_has_the_light_of_a_room) {
+    const auto shade = [&](model::EffectMask effects, std::uint8_t sky, std::uint8_t room, bool from_behind = false) {
+        SmallModel scene;
+        auto material = plain(0.5F, 0.5F, 0.5F, 1, effects);
+        material.two_sided = true;
+        mat3 turned(1.0F);
+        if (from_behind) turned[0][0] = turned[2][2] = -1;
+        const auto node = scene.square(scene.material(material), at(0, 0, -1, turned), 0.5F);
+        auto model = scene.finish();
+        for (model::Vertex& v : model.vertices) v.hidden[0] = sky, v.hidden[2] = room;
+        return pixel(picture(model, {node}), 50, 50);
+    };
+    constexpr model::EffectMask sun = model::effect_sun, both = model::effect_sun | model::effect_openness;
+    EXPECT_EQ(shade(both, 0, 0), shade(sun, 0, 0)) << "in the open";
+    EXPECT_EQ(shade(both, 255, 0), shade(model::effect_openness, 255, 0)) << "no sky: the same with and without the sun's code";
+    EXPECT_NE(shade(both, 255, 0), shade(both, 0, 0));
+    EXPECT_LT(shade(both, 255, 255)[0], shade(both, 255, 0)[0] - 30) << "what is near shades";
+    EXPECT_EQ(shade(both, 255, 255, true), shade(sun, 0, 0, true)) << "behind it nothing is hidden";
+}
+
 TEST_F(DeviceTest, a_switched_off_sun_leaves_no_trace_and_comes_back) {
     gl::DeviceOptions options;
     options.kind = BackendKind::egl;
