@@ -24,27 +24,38 @@ constexpr int warm_up = 3, usual_reloads = 12;
 // Software GL keeps some of every context (Mesa 22.3: up to 140 KiB); our own parts nothing.
 constexpr std::int64_t max_kib_a_reload = 16, max_kib_a_reload_gl = 256;
 
-// What rt::prefault_heap() touches of the frame thread's own heap. Which of glibc's heaps that is, is glibc's choice in every
-// walk, and a heap stays as large as it was: locked memory rises by so much once for each heap, and never again. By less where
-// the rest of a walk (0.9 MiB) comes to lie in another: so growth is what both later thirds of the walks have over the one
-// before.
-constexpr std::int64_t prefaulted_kib = 16 << 10, rest_of_a_walk_kib = 1 << 10;
+// What rt::prefault_heap() touches of the frame thread's own heap, and what every other thread's heap grows by at first
+// (M_TOP_PAD, rt/threads/memory.cpp). Which of glibc's heaps a thread gets, and how many there are, depends on which threads of
+// a walk start together; and a heap stays as large as it was. So locked memory rises by so much once for each heap, and never
+// again. By less where the rest of a walk (0.9 MiB) comes to lie in another: so growth is what both later thirds of the walks
+// have over the one before.
+constexpr std::int64_t prefaulted_kib = 16 << 10, first_growth_kib = 1 << 10, rest_of_a_walk_kib = 1 << 10;
 constexpr std::uint64_t heap_alignment = 64U << 20U;  // HEAP_MAX_SIZE of malloc/arena.c
 
 struct Held {
     std::int64_t descriptors = 0, threads = 0;
-    std::int64_t resident_kib = 0;  ///< but for the heaps touched beforehand
+    std::int64_t resident_kib = 0;  ///< but for what heaps hold beforehand
 };
 
-/// Threads' heaps that hold what a frame thread touches.
-std::int64_t touched_heaps(pid_t pid) {
+/// Threads' heaps that hold what a frame thread touches, and those that hold at least what a heap grows by at first.
+struct Heaps {
+    std::int64_t touched = 0, grown = 0;
+    std::int64_t kib() const { return touched * prefaulted_kib + grown * first_growth_kib; }
+};
+
+Heaps heaps_of(pid_t pid) {
     std::ifstream maps("/proc/" + std::to_string(pid) + "/smaps");
-    std::int64_t heaps = 0;
+    Heaps heaps;
     bool heap = false;
     for (std::string line; std::getline(maps, line);) {
         std::uint64_t from = 0, to = 0;
         if (std::sscanf(line.c_str(), "%lx-%lx rw-p 00000000 00:00 0", &from, &to) == 2) heap = from % heap_alignment == 0;
-        if (heap && line.starts_with("Rss:") && std::stoll(line.substr(4)) >= prefaulted_kib) ++heaps;
+        if (!heap || !line.starts_with("Rss:")) continue;
+        const std::int64_t kib = std::stoll(line.substr(4));
+        if (kib >= prefaulted_kib)
+            ++heaps.touched;
+        else if (kib >= first_growth_kib)
+            ++heaps.grown;
     }
     return heaps;
 }
@@ -58,7 +69,7 @@ Held held_by(pid_t pid) {
         if (line.starts_with("VmRSS:")) held.resident_kib = std::stoll(line.substr(6));
         if (line.starts_with("Threads:")) held.threads = std::stoll(line.substr(8));
     }
-    held.resident_kib -= touched_heaps(pid) * prefaulted_kib;
+    held.resident_kib -= heaps_of(pid).kib();
     return held;
 }
 
@@ -113,13 +124,17 @@ TEST_P(Growth, OfManyReloadsIsNone) {
         Held& third = n <= warm_up + few ? before : n <= warm_up + reloads - few ? between : after;
         third = min_of(third, held);
     }
+    const Heaps heaps = heaps_of(daemon.pid);
     std::printf(
-        "%s, %d reloads: descriptors %ld to %ld, threads %ld to %ld, resident %ld, %ld, %ld KiB beside %ld heaps of 16 MiB\n",
+        "%s, %d reloads: descriptors %ld to %ld, threads %ld to %ld, resident %ld, %ld, %ld KiB beside %ld heaps of 16 MiB and "
+        "%ld "
+        "of 1 MiB\n",
         backend.c_str(), reloads, static_cast<long>(before.descriptors), static_cast<long>(after.descriptors),
         static_cast<long>(before.threads), static_cast<long>(after.threads), static_cast<long>(before.resident_kib),
-        static_cast<long>(between.resident_kib), static_cast<long>(after.resident_kib),
-        static_cast<long>(touched_heaps(daemon.pid)));
-    EXPECT_LE(touched_heaps(daemon.pid), after.threads);
+        static_cast<long>(between.resident_kib), static_cast<long>(after.resident_kib), static_cast<long>(heaps.touched),
+        static_cast<long>(heaps.grown));
+    EXPECT_LE(heaps.touched, after.threads);
+    EXPECT_LE(heaps.grown, 2 * after.threads);  // a walk's threads, and those that prepare it
     EXPECT_LE(after.descriptors, before.descriptors);
     EXPECT_LE(after.threads, before.threads);
     if (memory_counts) {
