@@ -283,14 +283,22 @@ const select::SelectState& Engine::selection_memory() const {
     return impl_->state;
 }
 
-void Engine::show_switchable(bool shown) {
+void Engine::hide_effects(model::EffectMask hidden) {
     Impl& e = *impl_;
     e.draws.plays();
-    if (shown == e.switchable_shown) return;
+    if (hidden == e.hidden) return;
     e.device->draws.plays();
-    e.switchable_shown = shown;
-    e.device->show_switchable(shown);
+    e.hidden = hidden;
+    e.device->hide_effects(hidden);
     e.watch.forget();
+    e.rest_picture.leave();
+}
+
+void Engine::set_light(const model::Daylight& light) {
+    Impl& e = *impl_;
+    e.draws.plays();
+    e.device->draws.plays();
+    e.device->set_light(light);
     e.rest_picture.leave();
 }
 

@@ -128,9 +128,11 @@ public:
     /// Changes the selector, from the next prepare() on. No prepare() may be running, since `flat` changes its depth. Allocates.
     Result<void> set_selector(std::string_view name);
 
-    /// Whether the next pictures have the device's switchable effects (gl::DeviceOptions). Between pictures, on the thread that
-    /// draws. A change lets a picture at rest begin anew. Costs are predicted as with them.
-    void show_switchable(bool shown);
+    /// Leaves groups of effects out of the next pictures (gl::DeviceOptions::switches), or the model's own light gives way to
+    /// another. Between pictures, on the thread that draws. A change lets a picture at rest begin anew. Costs are predicted as
+    /// with all effects.
+    void hide_effects(model::EffectMask hidden);
+    void set_light(const model::Daylight& light);
 
     /// Offers something that the next select() may buy beside forms. False: refused, and counted in its cut.
     bool offer(const select::Item& item);

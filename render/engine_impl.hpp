@@ -59,7 +59,7 @@ struct Engine::Impl {
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
-    bool switchable_shown GUARDED_BY(draws) = true;
+    model::EffectMask hidden GUARDED_BY(draws) = 0;
     double promised_rad GUARDED_BY(draws) = 0;  ///< error that the last cut was to keep; 0: none
     /// How long the frame before took; on a clock that does not run within frames, as predicted. 0: it drew no cut.
     double last_frame_us GUARDED_BY(draws) = 0;

@@ -308,11 +308,18 @@ void add_openness(const Openness& openness, std::vector<model::EffectFinding>& f
 std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
                                                const Openness& openness) {
     constexpr std::array<const char*, model::effect_count> absent = {
-        "no material has an image",         "all vertex colours are white or absent",
-        "every material is unlit",          "no material has alpha mode MASK",
-        "no material has alpha mode BLEND", "not measured: the bake is of quality draft, or nothing lit is hidden from the sky"};
+        "no material has an image",
+        "all vertex colours are white or absent",
+        "every material is unlit",
+        "no material has alpha mode MASK",
+        "no material has alpha mode BLEND",
+        "not measured: the bake is of quality draft, or nothing lit is hidden from the sky",
+        "not measured: the bake is of quality draft, or nothing stands between sun and scene",
+        "no lamp and nothing that glows, or the bake is of quality draft",
+        "the scene names no fog"};
     constexpr std::array<const char*, model::effect_count> what = {"have an image",        "have vertex colours", "are lit",
-                                                                   "are cut out by alpha", "are transparent",     "are shaded"};
+                                                                   "are cut out by alpha", "are transparent",     "are shaded",
+                                                                   "lie in shadow",        "are lit by lamps",    "lie in fog"};
     std::vector<model::EffectFinding> findings;
     for (std::size_t e = 0; e < model::effect_count; ++e) {
         model::EffectFinding f;

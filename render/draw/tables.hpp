@@ -23,6 +23,7 @@ struct DrawPart {
     float texture_layer;
     std::uint16_t program;  ///< in the list of masks
     bool two_sided, blended;
+    bool captured;  ///< a picture that holds the light of the bake
 };
 
 /// A representation: its placement and its range of parts.

@@ -1,4 +1,5 @@
 // Programs from modules: the bare pipeline, and into its slots the pieces of a mask's effects and of no other.
+#include <algorithm>
 #include <array>
 
 #include "render/effects/modules.hpp"
@@ -7,7 +8,8 @@ namespace surefoot::effects {
 
 namespace {
 
-constexpr model::EffectMask varying_colour = model::effect_vertex_colour | model::effect_sun | model::effect_openness;
+constexpr model::EffectMask varying_colour =
+    model::effect_vertex_colour | model::effect_sun | model::effect_openness | model::effect_lamps;
 
 // Of programs with light. Normals go by the cofactor matrix, which serves non-uniform scales; its sign is the determinant's, so a
 // mirrored placement turns it back. Normals of two-sided materials turn towards the eye.
@@ -20,16 +22,30 @@ constexpr std::string_view normal_code =
     "    n *= inversesqrt(max(dot(n, n), 1e-30)) * sign(dot(world_rows[0].xyz, cofactor_x));\n"
     "    bool turned = two_sided > 0.5 && dot(n, world) > 0.0;\n"
     "    if (turned) n = -n;\n"
-    "    vec3 lit = vec3(1.0);\n";
+    "    vec3 lit = vec3(1.0), by_sun = vec3(0.0);\n";
 constexpr std::string_view light_code = "    v_colour.rgb *= lit;\n";
 
 }  // namespace
 
 std::span<const EffectModule> all_effects() {
     static const std::array<EffectModule, model::effect_count> modules{texture_module,    vertex_colour_module, sun_module,
-                                                                       alpha_mask_module, blend_module,         openness_module};
+                                                                       alpha_mask_module, blend_module,         openness_module,
+                                                                       shadow_module,     lamps_module,         fog_module};
     return modules;
 }
+
+namespace {
+
+/// The effects of a mask, in the order of application.
+std::vector<const EffectModule*> modules_of(model::EffectMask mask) {
+    std::vector<const EffectModule*> out;
+    for (const EffectModule& module : all_effects())
+        if ((mask & module.bit) != 0) out.push_back(&module);
+    std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) { return a->order < b->order; });
+    return out;
+}
+
+}  // namespace
 
 std::string effects_text(model::EffectMask mask, std::string_view between) {
     std::string text;
@@ -48,8 +64,8 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
     std::string fragment_code;
     std::string fragment_code_samples;
     bool covers = false, has_light = false;
-    for (const EffectModule& module : all_effects()) {
-        if ((mask & module.bit) == 0) continue;
+    for (const EffectModule* const one : modules_of(mask)) {
+        const EffectModule& module = *one;
         if (module.is_light && !has_light) {
             vertex_declarations += normal_declarations;
             vertex_code += normal_code;

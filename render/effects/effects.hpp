@@ -21,7 +21,9 @@ struct EffectModule {
     std::string_view fragment_declarations, fragment_code;  ///< may change `colour`, discard
     /// In place of fragment_code where pixels have several samples; sets `opacity` to the covered share. Empty: fragment_code.
     std::string_view fragment_code_samples = {};
-    bool is_light = false;  ///< vertex_code may read the normal `n` and whether it was `turned` to the eye, and write `lit`
+    /// vertex_code may read the normal `n` and whether it was `turned` to the eye; write `lit`, and of it the share `by_sun`.
+    bool is_light = false;
+    int order = 0;  ///< of application; effects of the same order go by bit
 };
 
 /// In bit order. To add one: its bit, a file in this folder, and its line in modules.hpp and assemble.cpp.

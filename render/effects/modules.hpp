@@ -1,4 +1,4 @@
-// The effects' modules, one file each; listed in order of application by all_effects().
+// The effects' modules, one file each; listed by all_effects().
 #pragma once
 
 #include "render/effects/effects.hpp"
@@ -11,5 +11,8 @@ extern const EffectModule sun_module;
 extern const EffectModule alpha_mask_module;
 extern const EffectModule blend_module;
 extern const EffectModule openness_module;
+extern const EffectModule shadow_module;
+extern const EffectModule lamps_module;
+extern const EffectModule fog_module;
 
 }  // namespace surefoot::effects

@@ -17,6 +17,7 @@ constexpr EffectModule openness{
     .fragment_declarations = "",
     .fragment_code = "",
     .is_light = true,
+    .order = 4,
 };
 const EffectModule openness_module = openness;
 

@@ -8,10 +8,11 @@ constexpr EffectModule sun{
     .name = "sun",
     .help = "sun and sky light at the vertices",
     .requested_by = "a mesh with normals and a lit material",
-    .vertex_declarations = "uniform vec3 sun_direction;\n",
+    .vertex_declarations =
+        "uniform vec3 sun_direction;\nuniform vec3 sun_light;\nuniform vec3 ground_light;\nuniform vec3 sky_light;\n",
     .vertex_code =
-        "    vec3 sky = mix(vec3(0.34, 0.32, 0.30), vec3(0.52, 0.56, 0.62), 0.5 * n.y + 0.5);\n"
-        "    lit *= sky + vec3(0.56, 0.53, 0.47) * max(dot(n, sun_direction), 0.0);\n",
+        "    by_sun = sun_light * max(dot(n, sun_direction), 0.0);\n"
+        "    lit *= mix(ground_light, sky_light, 0.5 * n.y + 0.5) + by_sun;\n",
     .fragment_declarations = "",
     .fragment_code = "",
     .is_light = true,

@@ -88,6 +88,7 @@ namespace surefoot::gl {
     X(TexStorage3D, PFNGLTEXSTORAGE3DPROC)                                     \
     X(TexSubImage2D, PFNGLTEXSUBIMAGE2DPROC)                                   \
     X(TexSubImage3D, PFNGLTEXSUBIMAGE3DPROC)                                   \
+    X(Uniform1f, PFNGLUNIFORM1FPROC)                                           \
     X(Uniform1i, PFNGLUNIFORM1IPROC)                                           \
     X(Uniform3f, PFNGLUNIFORM3FPROC)                                           \
     X(UniformMatrix4fv, PFNGLUNIFORMMATRIX4FVPROC)                             \

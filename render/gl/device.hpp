@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "render/model/cost.hpp"
+#include "render/model/daylight.hpp"
 #include "render/model/model.hpp"
 #include "render/model/resolution.hpp"
 #include "render/model/view.hpp"
@@ -57,6 +58,9 @@ enum class RestSupport : std::uint8_t { none, picture, samples };
 /// Parts of items that are drawn together. Blended ones come last.
 enum class Parts : std::uint8_t { all, opaque, blended };
 
+/// Groups of effects that can be switched each by itself.
+constexpr std::size_t max_switches = 4;
+
 /// The screen of the kms back end.
 struct ScreenOptions {
     std::string name;           ///< of the connector, "HDMI-A-1"; empty: the first that is connected
@@ -85,8 +89,9 @@ struct DeviceOptions {
     rt::TextureFilter filter = rt::TextureFilter::automatic;
     bool smaller = false;            ///< frames below full resolution show the mip levels of the whole one; prepared by load()
     bool processor_enlarges = true;  ///< on a software driver: smaller frames are enlarged by the processor, not by a pass
-    model::EffectMask switchable =
-        0;                       ///< effects that show_switchable(false) leaves out; load() compiles programs without them too
+    /// Groups of effects that hide_effects() leaves out; at most max_switches. load() compiles programs without each union of
+    /// them.
+    std::vector<model::EffectMask> switches;
     bool second_filter = false;  ///< prepares set_filter(), where `filter` is automatic and the driver is software
 };
 
@@ -143,8 +148,11 @@ public:
     // ---- the frame; no own allocation, no throw ----
     /// The filter of the pictures that begin from now on. A change takes a call or two of the driver for each texture array.
     virtual void set_filter(rt::TextureFilter filter) REQUIRES(draws) { static_cast<void>(filter); }
-    /// Whether the switchable effects are drawn from now on. Call it between pictures; it costs nothing by itself.
-    virtual void show_switchable(bool shown) REQUIRES(draws) { static_cast<void>(shown); }
+    /// Leaves out each group of DeviceOptions::switches that `hidden` holds whole, and no other effect. Between pictures; it
+    /// costs nothing by itself.
+    virtual void hide_effects(model::EffectMask hidden) REQUIRES(draws) { static_cast<void>(hidden); }
+    /// The light of the pictures that begin from now on; after load() it is the model's own.
+    virtual void set_light(const model::Daylight& light) REQUIRES(draws) { static_cast<void>(light); }
     /// `resolution`: share of the picture's width and height at which it is drawn, then enlarged once by finish_frame(). The step
     /// of model::resolution_steps that is not above it, or the least; NaN, zero and below mean 1.
     virtual void begin_frame(const Pose& pose, float resolution) REQUIRES(draws) = 0;

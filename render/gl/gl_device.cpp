@@ -90,14 +90,31 @@ void GlDevice::set_texture_detail(std::size_t step) {
     state_known_ = false;
 }
 
-/// The state classes of all parts, then those that only parts without the switchable effects have.
+model::EffectMask GlDevice::mask_of_variant(std::size_t variant) const {
+    model::EffectMask mask = 0;
+    for (std::size_t i = 0; i < options_.switches.size(); ++i)
+        if ((variant >> i & 1U) != 0) mask |= options_.switches[i];
+    return mask;
+}
+
+void GlDevice::hide_effects(model::EffectMask hidden) {
+    variant_ = 0;
+    for (std::size_t i = 0; i < options_.switches.size(); ++i)
+        if ((options_.switches[i] & ~hidden) == 0) variant_ |= std::size_t{1} << i;
+    off_ = mask_of_variant(variant_);
+}
+
+/// The state classes of all parts, then those that only parts without some switchable effects have.
 std::vector<model::EffectMask> GlDevice::find_programs() {
     std::vector<model::EffectMask> masks = tables_.masks;
     without_.clear();
-    for (const model::EffectMask mask : tables_.masks) {
-        const auto found = std::find(masks.begin(), masks.end(), mask & ~options_.switchable);
-        without_.push_back(static_cast<std::uint16_t>(found - masks.begin()));
-        if (found == masks.end()) masks.push_back(mask & ~options_.switchable);
+    for (std::size_t variant = 0; variant < std::size_t{1} << options_.switches.size(); ++variant) {
+        for (const model::EffectMask mask : tables_.masks) {
+            const model::EffectMask left = mask & ~mask_of_variant(variant);
+            const auto found = std::find(masks.begin(), masks.end(), left);
+            without_.push_back(static_cast<std::uint16_t>(found - masks.begin()));
+            if (found == masks.end()) masks.push_back(left);
+        }
     }
     return masks;
 }
@@ -111,7 +128,7 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     resources_ = std::move(*resources);
     set_filter_ = filter();
     detail_step_ = 0;
-    sun_direction_ = vec3(glm::normalize(model.sun_direction));
+    light_ = model::daylight_of_model(model.sun_direction, model.light);
     warm_up();
     if (lost_)
         return Error{"warming up " + renderer_, "The driver does not finish", "Restart the driver, or use another --backend",
@@ -122,13 +139,12 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
 /// Every combination of program, texture and culling in the model is drawn once: drivers compile on first use, and the frame
 /// may not pay for it. One triangle of each; what it shows does not matter.
 void GlDevice::warm_up() {
-    const bool off = off_;
-    if (options_.switchable != 0) {
-        off_ = !off;
+    const model::EffectMask off = off_;
+    for (std::size_t variant = std::size_t{1} << options_.switches.size(); variant-- > 0;) {
+        hide_effects(mask_of_variant(variant));
         warm_up_parts();
-        off_ = off;
     }
-    warm_up_parts();
+    hide_effects(off);
     warm_up_passes();
     stats_ = {};
 }

@@ -33,7 +33,8 @@ public:
     [[nodiscard]] rt::TextureFilter filter() const override;
     [[nodiscard]] bool switches_filter() const override;
     void set_filter(rt::TextureFilter filter) override REQUIRES(draws);
-    void show_switchable(bool shown) override REQUIRES(draws) { off_ = !shown; }
+    void hide_effects(model::EffectMask hidden) override REQUIRES(draws);
+    void set_light(const model::Daylight& light) override REQUIRES(draws) { light_ = light; }
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
@@ -79,6 +80,7 @@ private:
     GlDevice(std::unique_ptr<Context> context, const DeviceOptions& options);
     Result<void> set_up() REQUIRES(draws);
     std::vector<model::EffectMask> find_programs() REQUIRES(draws);
+    [[nodiscard]] model::EffectMask mask_of_variant(std::size_t variant) const;
     void warm_up() REQUIRES(draws);
     void warm_up_parts() REQUIRES(draws);
     void warm_up_passes() REQUIRES(draws);
@@ -101,15 +103,16 @@ private:
     void fill_window() REQUIRES(draws);
     void fill_pixel_rows(const PixelRows& rows) REQUIRES(draws);
     [[nodiscard]] std::uint32_t program_of(const draw::DrawPart& part) const REQUIRES(draws) {
-        return off_ ? without_[part.program] : part.program;
+        return without_[variant_ * tables_.masks.size() + part.program];
     }
     /// As it is drawn now: a switchable effect that is left out is none.
     [[nodiscard]] bool is_blended(const draw::DrawPart& part) const REQUIRES(draws) {
-        return part.blended && !(off_ && (options_.switchable & model::effect_blend) != 0);
+        return part.blended && (off_ & model::effect_blend) == 0;
     }
     [[nodiscard]] std::uint32_t texture_of(const draw::DrawPart& part) const REQUIRES(draws) {
-        return off_ && (options_.switchable & model::effect_texture) != 0 ? model::none : part.texture;
+        return (off_ & model::effect_texture) != 0 ? model::none : part.texture;
     }
+    [[nodiscard]] GeometryBuffers geometry() const REQUIRES(draws);
     [[nodiscard]] State state_of(const Pending& pending) const REQUIRES(draws);
     void submit(std::span<Pending> sorted) REQUIRES(draws);
     void submit_blended() REQUIRES(draws);
@@ -138,14 +141,15 @@ private:
     draw::DrawTables tables_;
     rt::TextureFilter set_filter_ GUARDED_BY(draws) = rt::TextureFilter::bilinear;  ///< in the parameters of all textures
 
-    bool off_ GUARDED_BY(draws) = false;                    ///< the switchable effects are left out
-    std::vector<std::uint16_t> without_ GUARDED_BY(draws);  ///< by program of a part: the one without the switchable effects
+    model::EffectMask off_ GUARDED_BY(draws) = 0;           ///< effects that are left out
+    std::size_t variant_ GUARDED_BY(draws) = 0;             ///< bit i: group i of the switches is left out
+    std::vector<std::uint16_t> without_ GUARDED_BY(draws);  ///< programs, by variant, then by program of a part
 
     std::size_t detail_step_ GUARDED_BY(draws) = 0;  ///< the step for which all textures choose their mip levels
 
     Pose pose_ GUARDED_BY(draws);
     mat4 view_projection_ GUARDED_BY(draws){1.0F};
-    vec3 sun_direction_ GUARDED_BY(draws){0, 1, 0};
+    model::Daylight light_ GUARDED_BY(draws), shown_light_ GUARDED_BY(draws);  ///< of the next picture, and of this one
     std::uint64_t frame_number_ GUARDED_BY(draws) = 0;
     FrameStats stats_ GUARDED_BY(draws);
     std::vector<Pending> pending_ GUARDED_BY(draws), blended_ GUARDED_BY(draws);

@@ -28,7 +28,20 @@ void apply_depth_bias(std::uint8_t rank, std::array<float, 12>& rows) {
     for (float& value : rows) value *= away;
 }
 
+std::array<std::uint8_t, 4> darkened(std::array<std::uint8_t, 4> colour, const vec3& factor) {
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float value = static_cast<float>(colour[c]) * factor[static_cast<int>(c)] + 0.5F;
+        colour[c] = static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F));
+    }
+    return colour;
+}
+
 }  // namespace
+
+GeometryBuffers GlDevice::geometry() const {
+    return {resources_.vertices,   resources_.indices,  frame_.instance_buffer,
+            frame_.command_buffer, resources_.sun_seen, resources_.lamp_light};
+}
 
 void GlDevice::begin_frame(const Pose& pose, float resolution) {
     start_picture(pose);
@@ -52,6 +65,8 @@ void GlDevice::start_picture(const Pose& pose) {
     blended_count_ = 0;
     used_instances_ = used_commands_ = 0;
     state_known_ = false;
+    shown_light_ = light_;
+    shown_light_.background *= vec3(options_.sky[0], options_.sky[1], options_.sky[2]);
 }
 
 void GlDevice::draw_into(const Target& target) {
@@ -66,7 +81,8 @@ void GlDevice::draw_into(const Target& target) {
 }
 
 void GlDevice::clear_target() {
-    gl_.ClearColor(options_.sky[0], options_.sky[1], options_.sky[2], 1.0F);
+    const vec3& behind = shown_light_.background;
+    gl_.ClearColor(behind.r, behind.g, behind.b, 1.0F);
     gl_.ClearDepthf(0.0F);
     gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
@@ -179,7 +195,7 @@ void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
     const draw::DrawRep& rep = tables_.reps[pending.rep];
     apply_depth_bias(tables_.depth_bias.ranks[tables_.depth_bias.first_of_rep[pending.rep] + pending.part - rep.first_part],
                      instance.rows);
-    instance.colour = part.colour;
+    instance.colour = part.captured ? darkened(part.colour, shown_light_.pictures) : part.colour;
     instance.alpha_cutoff = part.alpha_cutoff;
     instance.two_sided = part.two_sided ? 1.0F : 0.0F;
     instance.texture_layer = part.texture_layer;
@@ -212,8 +228,8 @@ void GlDevice::apply(const State& state) {
         set_coverage(program.coverage);
     if (program.frame != frame_number_) {
         gl_.UniformMatrix4fv(program.view_projection, 1, GL_FALSE, &view_projection_[0][0]);
-        if (program.sun_direction >= 0)
-            gl_.Uniform3f(program.sun_direction, sun_direction_.x, sun_direction_.y, sun_direction_.z);
+        write_light(gl_, program, shown_light_);
+        if (program.reads_sun_seen) set_sun_moment(gl_, program, geometry(), shown_light_.sun_moment);
         program.frame = frame_number_;
     }
     if (state.texture != model::none && (all || state.texture != current_.texture)) {

@@ -2,6 +2,7 @@
 #include "render/gl/program.hpp"
 
 #include <cstddef>
+#include <cstring>
 #include <utility>
 
 #include "render/model/model.hpp"
@@ -12,6 +13,8 @@ namespace {
 
 constexpr GLuint vertex_binding = 0;
 constexpr GLuint instance_binding = 1;
+constexpr GLuint sun_seen_binding = 2;
+constexpr GLuint lamp_binding = 3;
 
 /// An attribute that a program may read: GLSL name (without array index), place and form in its buffer.
 struct Attribute {
@@ -24,17 +27,38 @@ struct Attribute {
     int locations;  ///< an array takes several
 };
 
-constexpr std::array<Attribute, 10> attributes{{
+constexpr std::array<Attribute, 13> attributes{{
     {"position", vertex_binding, 3, GL_FLOAT, GL_FALSE, offsetof(model::Vertex, position), 1},
     {"normal", vertex_binding, 3, GL_BYTE, GL_TRUE, offsetof(model::Vertex, normal), 1},
     {"vertex_colour", vertex_binding, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(model::Vertex, colour), 1},
     {"uv", vertex_binding, 2, GL_FLOAT, GL_FALSE, offsetof(model::Vertex, uv), 1},
     {"hidden", vertex_binding, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(model::Vertex, hidden), 1},
+    {"sun_seen", sun_seen_binding, 2, GL_UNSIGNED_BYTE, GL_TRUE, 0, 1},
+    {"lamps_before", lamp_binding, 3, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(model::LampLight, before), 1},
+    {"lamps_behind", lamp_binding, 3, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(model::LampLight, behind), 1},
     {"world_rows", instance_binding, 4, GL_FLOAT, GL_FALSE, offsetof(Instance, rows), 3},
     {"material_colour", instance_binding, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Instance, colour), 1},
     {"alpha_cutoff", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, alpha_cutoff), 1},
     {"two_sided", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, two_sided), 1},
     {"texture_layer", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, texture_layer), 1},
+}};
+
+/// A uniform of the light: its GLSL name, and where Daylight has its floats.
+struct LightUniform {
+    const char* name;
+    std::size_t offset;
+    int components;
+};
+
+constexpr std::array<LightUniform, light_uniforms> uniforms_of_light{{
+    {"sun_direction", offsetof(model::Daylight, sun_direction), 3},
+    {"sun_light", offsetof(model::Daylight, sun_light), 3},
+    {"ground_light", offsetof(model::Daylight, ground_light), 3},
+    {"sky_light", offsetof(model::Daylight, sky_light), 3},
+    {"sun_between", offsetof(model::Daylight, sun_between), 1},
+    {"lamp_strength", offsetof(model::Daylight, lamp_strength), 1},
+    {"fog_density", offsetof(model::Daylight, fog_density), 1},
+    {"fog_colour", offsetof(model::Daylight, background), 3},
 }};
 
 /// A shader object, deleted where it goes out of scope: a program that it is attached to keeps it as long as it needs it.
@@ -73,6 +97,8 @@ void make_vertex_array(const Api& gl, Program& program, const GeometryBuffers& b
     gl.BindVertexBuffer(vertex_binding, buffers.vertices, 0, sizeof(model::Vertex));
     gl.BindVertexBuffer(instance_binding, buffers.instances, 0, sizeof(Instance));
     gl.VertexBindingDivisor(instance_binding, 1);
+    if (buffers.sun_seen != 0) gl.BindVertexBuffer(sun_seen_binding, buffers.sun_seen, 0, sizeof(model::SunSeen));
+    if (buffers.lamp_light != 0) gl.BindVertexBuffer(lamp_binding, buffers.lamp_light, 0, sizeof(model::LampLight));
     for (const Attribute& a : attributes) {
         const GLint first = gl.GetAttribLocation(program.id, a.name);
         if (first < 0) continue;
@@ -122,7 +148,9 @@ Result<Program> make_program(const Api& gl, model::EffectMask mask, ProgramSourc
     program.source = std::move(source);
     program.id = *id;
     program.view_projection = gl.GetUniformLocation(program.id, "view_projection");
-    program.sun_direction = gl.GetUniformLocation(program.id, "sun_direction");
+    for (std::size_t i = 0; i < light_uniforms; ++i)
+        program.light[i] = gl.GetUniformLocation(program.id, uniforms_of_light[i].name);
+    program.reads_sun_seen = gl.GetAttribLocation(program.id, "sun_seen") >= 0;
     const GLint sampler = gl.GetUniformLocation(program.id, "base_colour");
     if (sampler >= 0) {
         gl.UseProgram(program.id);
@@ -130,6 +158,27 @@ Result<Program> make_program(const Api& gl, model::EffectMask mask, ProgramSourc
     }
     make_vertex_array(gl, program, buffers);
     return program;
+}
+
+void write_light(const Api& gl, const Program& program, const model::Daylight& light) {
+    const auto* const bytes = reinterpret_cast<const std::byte*>(&light);
+    for (std::size_t i = 0; i < light_uniforms; ++i) {
+        if (program.light[i] < 0) continue;
+        std::array<float, 3> value{};
+        const LightUniform& uniform = uniforms_of_light[i];
+        std::memcpy(value.data(), bytes + uniform.offset, static_cast<std::size_t>(uniform.components) * sizeof(float));
+        if (uniform.components == 1) {
+            gl.Uniform1f(program.light[i], value[0]);
+        } else {
+            gl.Uniform3f(program.light[i], value[0], value[1], value[2]);
+        }
+    }
+}
+
+void set_sun_moment(const Api& gl, Program& program, const GeometryBuffers& buffers, std::uint32_t moment) {
+    if (program.sun_moment == moment || buffers.sun_seen == 0) return;
+    gl.BindVertexBuffer(sun_seen_binding, buffers.sun_seen, moment, sizeof(model::SunSeen));
+    program.sun_moment = moment;
 }
 
 void delete_program(const Api& gl, Program& program) {

@@ -8,6 +8,7 @@
 
 #include "render/gl/api.hpp"
 #include "render/gl/device.hpp"
+#include "render/model/daylight.hpp"
 
 namespace surefoot::gl {
 
@@ -21,20 +22,27 @@ struct Instance {
 };
 static_assert(sizeof(Instance) == 64);
 
+/// Uniforms of a moment's light.
+constexpr std::size_t light_uniforms = 8;
+
 /// A linked program for one set of effects, with the places of its uniforms.
 struct Program {
     model::EffectMask mask = 0;
     ProgramSource source;
     GLuint id = 0, vertex_array = 0;
-    GLint view_projection = -1, sun_direction = -1;  ///< uniform locations, -1: not used
-    std::uint64_t frame = 0;                         ///< the frame whose uniforms it holds
-    std::uint32_t attributes = 0;                    ///< bit a location
-    bool coverage = false;                           ///< its alpha says which samples of a pixel are drawn
+    GLint view_projection = -1;                 ///< uniform location
+    std::array<GLint, light_uniforms> light{};  ///< locations of the light's uniforms that it reads, -1: not used
+    std::uint64_t frame = 0;                    ///< the frame whose uniforms it holds
+    std::uint32_t attributes = 0;               ///< bit a location
+    std::uint32_t sun_moment = 0;               ///< of SunSeen, from which its vertex array reads
+    bool reads_sun_seen = false;                ///< it has to follow the moment
+    bool coverage = false;                      ///< its alpha says which samples of a pixel are drawn
 };
 
 /// Buffers that every vertex array reads.
 struct GeometryBuffers {
     GLuint vertices = 0, indices = 0, instances = 0, commands = 0;
+    GLuint sun_seen = 0, lamp_light = 0;  ///< 0: the model has none
 };
 
 /// Compiles and links; the error carries the compiler's message.
@@ -42,6 +50,10 @@ Result<GLuint> link_program(const Api& gl, const ProgramSource& source);
 /// link_program(), and the vertex array. samples: pixels have several.
 Result<Program> make_program(const Api& gl, model::EffectMask mask, ProgramSource source, bool samples,
                              const GeometryBuffers& buffers);
+/// Sets the uniforms of light that it reads. It must be in use.
+void write_light(const Api& gl, const Program& program, const model::Daylight& light);
+/// Lets its vertex array, which must be bound, read the sun's visibility at this moment and the next.
+void set_sun_moment(const Api& gl, Program& program, const GeometryBuffers& buffers, std::uint32_t moment);
 void delete_program(const Api& gl, Program& program);
 
 }  // namespace surefoot::gl

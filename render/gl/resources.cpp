@@ -109,6 +109,12 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
     gl.BindVertexArray(0);  // the index buffer's binding belongs to the vertex array
     resources.vertices = make_static(gl, GL_ARRAY_BUFFER, model.vertices.data(), model.vertices.size() * sizeof(model::Vertex));
     resources.indices = make_static(gl, GL_ARRAY_BUFFER, model.indices.data(), model.indices.size() * sizeof(std::uint32_t));
+    if (!model.sun_seen.empty())
+        resources.sun_seen =
+            make_static(gl, GL_ARRAY_BUFFER, model.sun_seen.data(), model.sun_seen.size() * sizeof(model::SunSeen));
+    if (!model.lamp_light.empty())
+        resources.lamp_light =
+            make_static(gl, GL_ARRAY_BUFFER, model.lamp_light.data(), model.lamp_light.size() * sizeof(model::LampLight));
     const std::string remedy = "Bake a smaller part: the model's geometry does not fit the device";
     if (auto fine = check_errors(gl, "uploading geometry", remedy); !fine) return fine.error();
     for (const draw::TextureArray& array : layout.arrays) {
@@ -118,7 +124,8 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
     }
     const std::string smaller = "Scale the textures down: they do not fit the device";
     if (auto fine = check_errors(gl, "uploading textures", smaller); !fine) return fine.error();
-    const GeometryBuffers buffers{resources.vertices, resources.indices, frame.instance_buffer, frame.command_buffer};
+    const GeometryBuffers buffers{resources.vertices,   resources.indices,  frame.instance_buffer,
+                                  frame.command_buffer, resources.sun_seen, resources.lamp_light};
     for (const model::EffectMask mask : masks) {
         auto program = make_program(gl, mask, programs(mask), options.samples, buffers);
         if (!program) return program.error();
@@ -147,8 +154,8 @@ void free_resources(const Api& gl, Resources& resources) {
     for (Program& program : resources.programs) delete_program(gl, program);
     if (!resources.textures.empty())
         gl.DeleteTextures(static_cast<GLsizei>(resources.textures.size()), resources.textures.data());
-    const std::array<GLuint, 2> buffers{resources.vertices, resources.indices};
-    gl.DeleteBuffers(2, buffers.data());
+    const std::array<GLuint, 4> buffers{resources.vertices, resources.indices, resources.sun_seen, resources.lamp_light};
+    gl.DeleteBuffers(4, buffers.data());
     resources = {};
 }
 

@@ -33,8 +33,9 @@ Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items);
 /// Buffers and textures of one model in the GL context.
 struct Resources {
     GLuint vertices = 0, indices = 0;
-    std::vector<GLuint> textures;   ///< in the order of TextureLayout::arrays
-    std::vector<Program> programs;  ///< in the order of DrawTables::masks
+    GLuint sun_seen = 0, lamp_light = 0;  ///< 0: the model has none
+    std::vector<GLuint> textures;         ///< in the order of TextureLayout::arrays
+    std::vector<Program> programs;        ///< in the order of DrawTables::masks
 };
 /// How everything is drawn. trilinear: else from the nearest mip level. samples: pixels have several.
 struct LoadOptions {

@@ -61,7 +61,8 @@ ItemCost CostModel::item(float triangles, float pixels, const CostGrid& grid) co
 }
 
 const CostGrid& CostModel::grid_for(EffectMask effects) const {
-    if ((effects & effect_openness) != 0) effects = (effects & ~EffectMask{effect_openness}) | effect_sun;  // the same work
+    constexpr EffectMask baked = effect_openness | effect_shadow | effect_lamps;
+    if ((effects & baked) != 0) effects = (effects & ~baked) | effect_sun;  // about the same work
     const CostGrid* best = &grids.front();
     int best_rank = -1000;
     for (const CostGrid& grid : grids) {

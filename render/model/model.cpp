@@ -208,6 +208,22 @@ Check check_tree(const Model& m) {
     return {};
 }
 
+Check check_light(const Model& m) {
+    const auto wrong_light = [](const char* what) { return Error{"light", what, "Bake the model again", ErrorKind::damaged}; };
+    EffectMask used = 0;
+    for (const Material& material : m.materials) used |= material.effects;
+    const std::size_t n = m.vertices.size();
+    if (!m.sun_seen.empty() && m.sun_seen.size() != n) return wrong_light("Shadows are not there for every vertex");
+    if (!m.lamp_light.empty() && m.lamp_light.size() != n) return wrong_light("Lamps are not there for every vertex");
+    if ((used & effect_shadow) != 0 && m.sun_seen.empty()) return wrong_light("A material has shadows, and no vertex has any");
+    if ((used & effect_lamps) != 0 && m.lamp_light.empty()) return wrong_light("A material has lamps, and no vertex has any");
+    const LightFacts& l = m.light;
+    if (!(l.day >= 1 && l.day <= 366) || !(std::abs(l.latitude_deg) <= 90)) return wrong_light("The sun's day or place is wrong");
+    if (!(l.max_lamp_light > 0 && l.max_lamp_light <= 1e4F)) return wrong_light("The lamps' light is out of range");
+    if (!(l.fog_visibility_m >= 0 && l.fog_visibility_m <= 1e7F)) return wrong_light("The fog is out of range");
+    return {};
+}
+
 Check check_rest(const Model& m) {
     if (m.names.empty() || m.names.front() != '\0' || m.names.back() != '\0') {
         return Error{"names", "The names are not zero-terminated", "Bake the model again", ErrorKind::damaged};
@@ -223,6 +239,7 @@ Check check_rest(const Model& m) {
     if ((used & ~m.called_for()) != 0)
         return Error{"effects", "A material uses an effect that no finding calls for", "Bake the model again",
                      ErrorKind::damaged};
+    if (auto light = check_light(m); !light) return light;
     if (!finite(m.sun_direction) || std::abs(glm::length(m.sun_direction) - 1.0) > 0.01) {
         return Error{"sun_direction", "The direction is no unit vector", "Bake the model again", ErrorKind::damaged};
     }

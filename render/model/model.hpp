@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/model/daylight.hpp"
 #include "render/model/effects.hpp"
 #include "render/model/ground.hpp"
 #include "render/model/picture_loss.hpp"
@@ -143,6 +144,9 @@ struct Model {
     std::string tour_kind;                                 ///< what it does: "through its free space"
     std::uint32_t object_count = 0;
     dvec3 sun_direction{0.36, 0.80, 0.48};  ///< towards the sun, unit
+    LightFacts light;
+    std::vector<SunSeen> sun_seen;      ///< by vertex; empty: not called for
+    std::vector<LampLight> lamp_light;  ///< by vertex; empty: not called for
     Provenance provenance;
 
     [[nodiscard]] const char* name_of(const Node& node) const { return node.name == none ? "" : names.c_str() + node.name; }

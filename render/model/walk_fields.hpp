@@ -113,6 +113,10 @@ void fields(Archive& a, SpreadT& s) {
     a(s.variance);
 }
 
+template <class Archive, class LightT>
+requires std::is_same_v<std::remove_const_t<LightT>, LightFacts>
+void fields(Archive& a, LightT& l) { a(l.day), a(l.latitude_deg), a(l.max_lamp_light), a(l.fog_visibility_m); }
+
 template <class Archive, class PartT>
 requires std::is_same_v<std::remove_const_t<PartT>, Part>
 void fields(Archive& a, PartT& p) { a(p.material), a(p.first_index), a(p.index_count), a(p.first_vertex), a(p.vertex_count); }

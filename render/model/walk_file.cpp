@@ -50,14 +50,16 @@ enum Section : std::uint32_t {
     losses_section,
     ground_section,
     tour_section,
+    light_section,
     section_count
 };
-constexpr std::array<std::string_view, section_count> section_names = {"pages",      "nodes",     "representations", "parts",
-                                                                       "placements", "materials", "textures",        "effects",
-                                                                       "provenance", "losses",    "ground",          "tour"};
+constexpr std::array<std::string_view, section_count> section_names = {
+    "pages",   "nodes",      "representations", "parts",  "placements", "materials", "textures",
+    "effects", "provenance", "losses",          "ground", "tour",       "light"};
 /// No model is valid without them; any other that a file has not got is empty.
 constexpr bool required(std::uint32_t section) {
-    return section != textures_section && section != losses_section && section != ground_section && section != tour_section;
+    return section != textures_section && section != losses_section && section != ground_section && section != tour_section &&
+           section != light_section;
 }
 
 struct PageEntry {
@@ -66,9 +68,10 @@ struct PageEntry {
 };
 
 struct PayloadSizes {
-    std::uint64_t vertices = 0, indices = 0, texels = 0;  ///< bytes
-    [[nodiscard]] std::array<std::uint64_t, 3> all() const { return {vertices, indices, texels}; }
-    [[nodiscard]] std::uint64_t sum() const { return vertices + indices + texels; }
+    std::uint64_t vertices = 0, indices = 0, texels = 0, sun_seen = 0, lamp_light = 0;  ///< bytes
+    [[nodiscard]] std::array<std::uint64_t, 5> all() const { return {vertices, indices, texels, sun_seen, lamp_light}; }
+    [[nodiscard]] std::uint64_t sum() const { return vertices + indices + texels + sun_seen + lamp_light; }
+    [[nodiscard]] bool has_light() const { return sun_seen + lamp_light > 0; }
 };
 
 std::uint64_t pages_of(std::uint64_t bytes) { return bytes / page_bytes + (bytes % page_bytes != 0 ? 1 : 0); }
@@ -119,6 +122,7 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
     switch (section) {
         case pages_section:
             page_directory(put, sizes, pages);
+            if (sizes.has_light()) put(sizes.sun_seen), put(sizes.lamp_light);
             break;
         case nodes_section:
             put.list(m.nodes);
@@ -151,6 +155,9 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
             break;
         case tour_section:
             put(m.tour_kind), put.list(m.tour.samples);
+            break;
+        case light_section:
+            walk::fields(put, m.light);
             break;
         default:
             walk::rest(put, m);
@@ -252,6 +259,7 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
     switch (section) {
         case pages_section:
             page_directory(take, sizes, pages);
+            if (take.reader.left() != 0) take(sizes.sun_seen), take(sizes.lamp_light);  // most files end here
             break;
         case nodes_section:
             take.list(m.nodes);
@@ -288,6 +296,9 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
         case tour_section:
             take(m.tour_kind), take.list(m.tour.samples);
             break;
+        case light_section:
+            walk::fields(take, m.light);
+            break;
         default:
             walk::rest(take, m);
             break;
@@ -312,7 +323,8 @@ Result<void> unpack_page(const Reading& in, std::span<const std::byte> stored, s
 Result<void> check_pages(const Reading& in, const PayloadSizes& sizes, const std::vector<PageEntry>& pages) {
     std::uint64_t count = 0;
     for (const std::uint64_t bytes : sizes.all()) count += pages_of(bytes);
-    if (count != pages.size() || sizes.vertices % sizeof(Vertex) != 0 || sizes.indices % sizeof(std::uint32_t) != 0) {
+    if (count != pages.size() || sizes.vertices % sizeof(Vertex) != 0 || sizes.indices % sizeof(std::uint32_t) != 0 ||
+        sizes.sun_seen % sizeof(SunSeen) != 0 || sizes.lamp_light % sizeof(LampLight) != 0) {
         return in.error("pages", "The sizes in the directory and of the pages disagree");
     }
     std::size_t number = 0;
@@ -356,20 +368,22 @@ Result<WalkFileInfo> write_walk(const std::string& file, const Model& model) {
     Packer packer;
     std::vector<PageEntry> pages;
     const std::array payloads = {std::as_bytes(std::span(model.vertices)), std::as_bytes(std::span(model.indices)),
-                                 std::span<const std::byte>(model.texels)};
+                                 std::span<const std::byte>(model.texels), std::as_bytes(std::span(model.sun_seen)),
+                                 std::as_bytes(std::span(model.lamp_light))};
     for (const auto payload : payloads) {
         if (auto written = write_pages(out, payload, packer, pages); !written) return written.error();
     }
     std::uint64_t pages_size = 0;
     for (const PageEntry& page : pages) pages_size += page.stored;
 
-    const PayloadSizes sizes{payloads[0].size(), payloads[1].size(), payloads[2].size()};
+    const PayloadSizes sizes{payloads[0].size(), payloads[1].size(), payloads[2].size(), payloads[3].size(), payloads[4].size()};
     std::uint64_t file_size = header_bytes + pages_size;
     walk::PutArchive table;
     for (std::uint32_t section = 0; section < section_count; ++section) {
         if (section == losses_section && model.losses.empty()) continue;
         if (section == ground_section && model.ground.empty()) continue;
         if (section == tour_section && model.tour.samples.empty()) continue;
+        if (section == light_section && model.light == LightFacts{}) continue;
         const auto bytes = section_bytes(section, model, sizes, pages);
         table(section), table(static_cast<std::uint64_t>(bytes.size())), table(hash_bytes(bytes));
         if (auto written = out.write(bytes); !written) return written.error();
@@ -402,10 +416,13 @@ Result<Model> read_walk(const std::string& file, WalkFileInfo* info) {
     model.vertices.resize(sizes.vertices / sizeof(Vertex));
     model.indices.resize(sizes.indices / sizeof(std::uint32_t));
     model.texels.resize(sizes.texels);
+    model.sun_seen.resize(sizes.sun_seen / sizeof(SunSeen));
+    model.lamp_light.resize(sizes.lamp_light / sizeof(LampLight));
     std::size_t number = 0;
     std::uint64_t at = 0;
     for (const auto out : {std::as_writable_bytes(std::span(model.vertices)), std::as_writable_bytes(std::span(model.indices)),
-                           std::span<std::byte>(model.texels)}) {
+                           std::span<std::byte>(model.texels), std::as_writable_bytes(std::span(model.sun_seen)),
+                           std::as_writable_bytes(std::span(model.lamp_light))}) {
         if (auto unpacked = unpack(in, out, pages, number, at); !unpacked) return unpacked.error();
     }
     if (auto valid = validate(model); !valid) {

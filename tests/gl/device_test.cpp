@@ -300,7 +300,7 @@ TEST_F(DeviceTest, a_switched_off_sun_leaves_no_trace_and_comes_back) {
     options.kind = BackendKind::egl;
     options.viewport = {side, side};
     options.sky = {0, 0, 1};
-    options.switchable = model::effect_sun;
+    options.switches = {model::effect_sun};
     auto opened = gl::open_device(options);
     ASSERT_TRUE(opened.ok()) << opened.error().text();
     device_ = std::move(*opened);
@@ -313,7 +313,7 @@ TEST_F(DeviceTest, a_switched_off_sun_leaves_no_trace_and_comes_back) {
     device_->draws.plays();
     const std::vector<gl::DrawItem> items = {{lit, model.nodes[lit].first_rep}, {plain_one, model.nodes[plain_one].first_rep}};
     for (const bool off : {true, false, false, true, true}) {
-        device_->show_switchable(!off);
+        device_->hide_effects(off ? model::EffectMask{model::effect_sun} : 0);
         show(*device_, items, straight());
         const auto image = device_->read_pixels();
         ASSERT_TRUE(image.ok());

@@ -33,7 +33,7 @@ public:
         auto model = model::read_walk(request_.model_file, &file);
         if (!model) return model.error();
         EngineOptions options;
-        options.device.switchable = off;
+        options.device.switches = {off};
         auto opened = open_engine_of_places(request_, std::move(*model), file.hash, options);
         if (!opened) return opened.error();
         report.machine = opened->machine;
@@ -83,7 +83,7 @@ private:
         engine.device().draws.plays();
         for (int round = -1; round < std::max(1, request_.repeats); ++round) {
             for (const bool off : {false, true}) {
-                engine.show_switchable(!off);
+                engine.hide_effects(off ? ~model::EffectMask{0} : 0);
                 const std::int64_t begun = rt::monotonic_ns();
                 engine.draw_unbudgeted(pose, items);
                 if (round >= 0) {
@@ -95,7 +95,7 @@ private:
                 images[off ? 1 : 0] = std::move(*image);
             }
         }
-        engine.show_switchable(true);
+        engine.hide_effects(0);
         const auto n = static_cast<double>(poses_.size());
         out.with_ms += quantile_of(ms[0], 0.5) / n;
         out.without_ms += quantile_of(ms[1], 0.5) / n;

@@ -125,7 +125,7 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     if (engine.options().device.kind == gl::BackendKind::null) return out;  // nothing to look at
 
     engine.device().draws.plays();
-    engine.show_switchable(snapshot.sunlight);
+    engine.hide_effects(snapshot.sunlight ? 0 : model::EffectMask{model::effect_sun});
     engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
@@ -169,7 +169,7 @@ Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::
         }
         progress.update("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
         const FrameSnapshot& snapshot = store.snapshots()[i];
-        engine.show_switchable(snapshot.sunlight);
+        engine.hide_effects(snapshot.sunlight ? 0 : model::EffectMask{model::effect_sun});
         engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();

@@ -117,7 +117,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.device.sky = config::colour_of(r.sky);
     options.device.fullscreen = r.fullscreen;
     const bool may_switch = !r.input_file.empty() || (r.may_steer && r.backend == window_input);
-    if (!r.sunlight || may_switch) options.device.switchable = model::effect_sun;
+    if (!r.sunlight || may_switch) options.device.switches = {model::effect_sun};
     options.device.null.cost_scale = r.cost_scale;
     options.device.null.noise = r.cost_noise;
     options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);

@@ -138,7 +138,7 @@ void WalkStages::rehearse(std::int64_t until_ns) {
         const prepare::PreparedFrame& set = prepared_.front();
         limit_.count(set);
         const FramePose newest = pose_source_.sample({0, due_ns, clock_.now_ns()});
-        engine_.show_switchable(shows_sunlight(newest));
+        engine_.hide_effects(shows_sunlight(newest) ? 0 : model::EffectMask{model::effect_sun});
         publish_rehearsed(newest, due_ns);
         const std::int64_t begun_ns = due_ns;
         due_ns += options_.period_ns;
@@ -221,7 +221,7 @@ void WalkStages::take(const FramePose& from, rt::FrameRecord& record) {
     record.input_reports = from.reports;
     record.stopped = from.stopped;
     record.sunlight = shows_sunlight(from);
-    engine_.show_switchable(record.sunlight);
+    engine_.hide_effects(record.sunlight ? 0 : model::EffectMask{model::effect_sun});
 }
 
 /// What came while the cut was chosen still counts, as far as the cut was made for it.

@@ -128,7 +128,7 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
     const std::uint32_t width = picture.width, height = picture.height;
     if (picture.walk.empty() || picture.full.empty()) return {};
     engine_.device().draws.plays();
-    engine_.show_switchable(snapshot.sunlight);
+    engine_.hide_effects(snapshot.sunlight ? 0 : model::EffectMask{model::effect_sun});
     const SquaredErrors wrong(picture.walk, picture.full, width, height);
     mse_ += picture.mse;
     const model::Model& model = engine_.model();
