@@ -1,0 +1,154 @@
+// The reference for pictures: every effect by its definition, at a vertex and at a pixel. Slow, in double.
+// It shares no code with render/, which it checks: of the model it only reads the data.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "render/model/model.hpp"
+#include "render/model/view.hpp"
+#include "rt/base/geometry.hpp"
+
+namespace surefoot::reference {
+
+/// A model, where it is seen from, and what shows where it is not.
+struct View {
+    const model::Model& model;
+    Pose pose;
+    model::Viewport viewport;
+    dvec3 sky{0.0};
+};
+
+/// What a corner of a triangle hands to its pixels. All of it varies evenly in space, not on the picture.
+struct Corner {
+    dvec3 from_eye{0.0};  ///< from the eye to it, along the axes of the world; metres
+    dvec4 colour{0.0};
+    dvec2 uv{0.0};
+};
+
+/// A vertex from the side that is lit: its normal there, and what is seen from that side.
+struct LitSide {
+    dvec3 normal{0.0};         ///< unit, world
+    double sky = 1, room = 1;  ///< shares that are not hidden
+};
+
+/// A pixel of a triangle, before its colour is known.
+struct Fragment {
+    Corner at;            ///< at the pixel's centre
+    dvec2 uv_right{0.0};  ///< by how much uv changes from this pixel to the next one to the right
+    dvec2 uv_below{0.0};  ///< the same for the next one below
+};
+
+inline bool has(const model::Material& material, model::Effect effect) { return (material.effects & effect) != 0; }
+
+/// The light that multiplies the colour of a vertex. Each effect of light changes what the effects before it leave.
+inline dvec3 light_at_vertex(const View& view, const model::Material& material, const LitSide& side) {
+    const dvec3& n = side.normal;
+    dvec3 light(1.0);
+    if (has(material, model::effect_sun)) {  // a hemisphere from ground to sky, and one sun
+        const dvec3 ground(0.34, 0.32, 0.30), sky(0.52, 0.56, 0.62), sun(0.56, 0.53, 0.47);
+        const double up = 0.5 + 0.5 * n.y;
+        const double facing = glm::dot(n, view.model.sun_direction) / glm::length(view.model.sun_direction);
+        light *= (1.0 - up) * ground + up * sky + std::max(facing, 0.0) * sun;
+    }
+    if (has(material, model::effect_openness)) {  // a quarter of the sky is enough for all of the light outside
+        const dvec3 of_room = dvec3(0.98, 0.95, 0.91) + dvec3(0.06 * n.x + 0.12 * n.y - 0.04 * n.z);
+        const double outside = std::min(1.0, 4.0 * side.sky);
+        light = (1.0 - outside) * of_room + outside * light;
+        light *= 0.6 + 0.4 * side.room;
+    }
+    return light;
+}
+
+/// The lit side of a vertex. A two-sided surface is lit on the side that the eye sees.
+inline LitSide lit_side(const model::Material& material, const dmat3& linear, const model::Vertex& v, const dvec3& from_eye) {
+    const dvec3 stored = glm::max(dvec3(v.normal[0], v.normal[1], v.normal[2]) / 127.0, dvec3(-1.0));
+    LitSide side;
+    side.normal = glm::normalize(glm::transpose(glm::inverse(linear)) * stored);
+    const bool behind = material.two_sided && glm::dot(side.normal, from_eye) > 0;
+    if (behind) side.normal = -side.normal;
+    side.sky = 1.0 - v.hidden[behind ? 1 : 0] / 255.0;
+    side.room = 1.0 - v.hidden[behind ? 3 : 2] / 255.0;
+    return side;
+}
+
+inline Corner corner_at(const View& view, const model::Material& material, const model::Placement& placement,
+                        const model::Vertex& v) {
+    const dmat3 linear(placement.linear);
+    Corner corner;
+    corner.from_eye = placement.origin - view.pose.position + linear * dvec3(v.position[0], v.position[1], v.position[2]);
+    corner.uv = dvec2(v.uv[0], v.uv[1]);
+    corner.colour = dvec4(material.colour[0], material.colour[1], material.colour[2], material.colour[3]);
+    if (has(material, model::effect_vertex_colour))
+        corner.colour *= dvec4(v.colour[0], v.colour[1], v.colour[2], v.colour[3]) / 255.0;
+    const dvec3 light = light_at_vertex(view, material, lit_side(material, linear, v, corner.from_eye));
+    corner.colour *= dvec4(light, 1.0);
+    return corner;
+}
+
+/// A texel, 0..1. Texels beyond the border repeat, or are those of the border.
+inline dvec4 texel(const model::Model& model, const model::Texture& texture, std::uint32_t level, double column, double row) {
+    std::uint64_t byte = texture.first_byte;
+    std::uint32_t width = texture.width, height = texture.height;
+    for (std::uint32_t i = 0; i < level; ++i) {
+        byte += 4ULL * width * height;
+        width = std::max(1U, width / 2);
+        height = std::max(1U, height / 2);
+    }
+    const auto inside = [&](double at, double count) {
+        return static_cast<std::uint64_t>(texture.clamp ? std::clamp(at, 0.0, count - 1) : at - count * std::floor(at / count));
+    };
+    byte += 4 * (inside(row, height) * width + inside(column, width));
+    dvec4 colour;
+    for (std::size_t i = 0; i < 4; ++i) colour[static_cast<int>(i)] = std::to_integer<int>(model.texels[byte + i]) / 255.0;
+    return colour;
+}
+
+/// The mip level for a pixel: the one whose texels are nearest to the pixel's size, by factors of two.
+inline std::uint32_t mip_level(const model::Texture& texture, const Fragment& fragment) {
+    const dvec2 size(texture.width, texture.height);
+    const double texels = std::max(glm::length(size * fragment.uv_right), glm::length(size * fragment.uv_below));
+    if (!(texels > 1)) return 0;
+    const double level = std::ceil(std::log2(texels) + 0.5) - 1, last = std::max(1U, texture.levels) - 1;
+    return static_cast<std::uint32_t>(std::clamp(level, 0.0, last));
+}
+
+/// The four texels around uv, each by its nearness in columns and rows.
+inline dvec4 bilinear(const model::Model& model, const model::Texture& texture, std::uint32_t level, const dvec2& uv) {
+    const double column = uv.x * std::max(1U, texture.width >> level) - 0.5;
+    const double row = uv.y * std::max(1U, texture.height >> level) - 0.5;
+    const double left = std::floor(column), top = std::floor(row);
+    const auto between = [&](double at_row) {
+        const double right = column - left;
+        return (1.0 - right) * texel(model, texture, level, left, at_row) +
+               right * texel(model, texture, level, left + 1, at_row);
+    };
+    return (1.0 - (row - top)) * between(top) + (row - top) * between(top + 1);
+}
+
+/// What a triangle does to a pixel.
+struct Shade {
+    dvec4 colour{0.0};           ///< 0..1; the fourth number is the opacity
+    bool is_hole = false;        ///< nothing is drawn
+    bool is_close_call = false;  ///< whether there is a hole hangs by the rounding of an alpha
+};
+
+/// The colour at a pixel. Each effect of pixels changes what the effects before it leave.
+inline Shade colour_at_pixel(const View& view, const model::Material& material, const Fragment& fragment) {
+    Shade shade{fragment.at.colour};
+    if (has(material, model::effect_texture)) {
+        const model::Texture& texture = view.model.textures[material.texture];
+        shade.colour *= bilinear(view.model, texture, mip_level(texture, fragment), fragment.at.uv);
+    }
+    if (has(material, model::effect_alpha_mask)) {
+        shade.is_hole = shade.colour.a < material.alpha_cutoff;
+        shade.is_close_call = std::abs(shade.colour.a - material.alpha_cutoff) < 2.0 / 255.0;
+    }
+    if (!has(material, model::effect_blend)) shade.colour.a = 1;
+    shade.colour = glm::clamp(shade.colour, 0.0, 1.0);
+    return shade;
+}
+
+}  // namespace surefoot::reference
