@@ -13,9 +13,6 @@
 namespace surefoot::importer {
 namespace {
 
-/// Farther than this from the origin even double loses the millimetre.
-constexpr double farthest_m = 1e12;
-
 /// Smaller than this is nothing that could be seen, and squares of it underflow float.
 constexpr double smallest_m = 1e-9;
 
@@ -114,6 +111,21 @@ void warn_of_images(Scene& scene) {
     }
 }
 
+/// Glow that a picture spreads would be too much if all of the surface had it.
+void warn_of_glow(Scene& scene) {
+    const Material* first = nullptr;
+    std::size_t others = 0;
+    for (const Material& material : scene.materials) {
+        if (!material.emission_image) continue;
+        others += first == nullptr ? 0 : 1;
+        if (first == nullptr) first = &material;
+    }
+    if (first == nullptr) return;
+    const std::string rest = others == 0 ? "" : fmt::format("; so is that of {} other{}", others, others == 1 ? "" : "s");
+    scene.warnings.push_back(
+        fmt::format("Material '{}': its glow is left out, because images of emission are not used{}", first->name, rest));
+}
+
 /// What things that are drawn lack. A library of materials may name pictures that nobody uses.
 void collect_damage(Scene& scene, const std::string& file) {
     std::vector<bool> mesh_drawn(scene.meshes.size(), false), material_drawn(scene.materials.size(), false);
@@ -140,6 +152,7 @@ Result<void> finish(Scene& scene, const std::string& file, const Progress& progr
     if (scene.materials.empty()) scene.materials.push_back(Material{.name = "white"});
     clean_meshes(scene, progress);
     warn_of_images(scene);
+    warn_of_glow(scene);
     collect_damage(scene, file);
     std::vector<Box> boxes;
     for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh));

@@ -9,6 +9,9 @@
 
 namespace surefoot::importer {
 
+/// Farther than this from the origin even double loses the millimetre.
+inline constexpr double farthest_m = 1e12;
+
 /// Cleans each primitive and drops empty ones. Removes meshes from nodes if they have no triangles or an unusable transform.
 /// Adds a white material if there is none. Error: nothing drawable is left; it names the first reasons.
 Result<void> finish(Scene& scene, const std::string& file, const Progress& progress);

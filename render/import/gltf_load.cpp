@@ -106,6 +106,7 @@ Result<void> check_extensions(const json& root, const std::string& file, std::ve
                                       "EXT_mesh_gpu_instancing",
                                       "KHR_lights_punctual",
                                       "KHR_materials_pbrSpecularGlossiness",
+                                      "KHR_materials_emissive_strength",
                                       "MSFT_lod"};
     for (const json& entry : array_in(root, "extensionsRequired")) {
         if (!entry.is_string()) continue;

@@ -130,6 +130,24 @@ void set_colour(Material& material, const std::vector<double>& linear) {
     material.colour[3] = std::clamp(static_cast<float>(linear[3]), 0.0F, 1.0F);
 }
 
+/// KHR_materials_emissive_strength included. What is unlit shows its colour as it is, and glows no further.
+void read_emission(const tinygltf::Material& from, Material& material, Scene& scene) {
+    if (material.unlit || from.emissiveFactor.size() != 3) return;
+    double strength = 1;
+    if (const auto found = from.extensions.find("KHR_materials_emissive_strength"); found != from.extensions.end())
+        strength = number_of(found->second, "emissiveStrength", 1);
+    const bool broken = !std::isfinite(strength) || strength < 0;
+    if (broken) strength = 1;
+    const auto& factor = from.emissiveFactor;
+    if (set_emission(material, strength * dvec3(factor[0], factor[1], factor[2])) || broken)
+        scene.warnings.push_back(
+            fmt::format("Material '{}': its emission is not finite, negative or too strong; it is taken as "
+                        "{:.3g}, {:.3g}, {:.3g}",
+                        material.name, material.emission.r, material.emission.g, material.emission.b));
+    material.emission_image = from.emissiveTexture.index >= 0 && material.emission != vec3(0);
+    if (material.emission_image) material.emission = vec3(0);
+}
+
 }  // namespace
 
 vec2 TextureUse::apply(vec2 uv) const {
@@ -159,6 +177,7 @@ std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::
         material.alpha_cutoff = static_cast<float>(from.alphaCutoff);
         material.two_sided = from.doubleSided;
         material.unlit = from.extensions.contains("KHR_materials_unlit");
+        read_emission(from, material, scene);
         scene.materials.push_back(std::move(material));
         uses.push_back(use_of(reference));
         progress.update("textures", static_cast<double>(i + 1) / static_cast<double>(model.materials.size()));

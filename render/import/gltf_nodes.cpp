@@ -224,6 +224,7 @@ void add_stand_in(const tinygltf::Model& model, const std::string& file, const s
         if (other.stand_in != claim.stand_in) walk.skip(other.stand_in);
     std::string why;
     if (auto walked = walk.from(claim.stand_in); !walked) why = in_short(walked.error());
+    walk.lights().warn();
     if (scene.damage.size() > damage) why = scene.damage.back().what;
     scene.damage.resize(damage);
     const std::string name = scene.nodes[first].name;

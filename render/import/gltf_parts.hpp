@@ -1,10 +1,12 @@
 // The parts of the glTF reader, in the order in which they are used; gltf.cpp puts them together.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "render/import/lamps.hpp"
 #include "render/import/scene.hpp"
 #include "render/import/tinygltf.hpp"
 #include "rt/base/result.hpp"
@@ -65,23 +67,46 @@ struct StandInClaim {
 /// All of a file, in its order. Warnings: nodes that do not exist.
 std::vector<StandInClaim> stand_in_claims(const tinygltf::Model& model, std::vector<std::string>& warnings);
 
-// ---- lights: the brightest distant one is the sun ----
+// ---- lights: the brightest distant one is the sun, the others are lamps ----
 
-/// Takes one node after the other.
+/// Takes one node after the other. Memory does not grow with the number of lights.
 class LightReader {
 public:
     LightReader(const tinygltf::Model& model, Scene& scene) : model_(model), scene_(scene) {}
-    /// Sets scene.sun if the node holds a brighter distant light. Warnings: lights that do not exist, with broken numbers, or
-    /// from below the horizon.
+    /// Sets scene.sun if the node holds a brighter distant light. Keeps a lamp for finish().
     void add(const tinygltf::Node& node, const dmat4& world);
-    /// A warning that counts the lamps.
+    /// One warning for each kind of flaw: it names the first such light and counts the others. A stand-in ends with this: the
+    /// lamps are those of its object.
+    void warn();
+    /// warn(), and the lamps go into the scene. Of too many the brightest stay, and a warning counts the others.
     void finish();
 
 private:
+    /// What can be wrong with a light.
+    enum class Flaw : std::uint8_t { missing, kind, sun, horizon, intensity, place, direction, colour, range, cone, count };
+    /// Lights with one flaw.
+    struct Flawed {
+        std::string first;  ///< the warning of the first one
+        std::size_t count = 0;
+    };
+
+    /// `warning` is called for the first of each kind only.
+    template <class Warning>
+    void flawed(Flaw flaw, Warning&& warning) {
+        Flawed& kind = flaws_[static_cast<std::size_t>(flaw)];
+        if (kind.count++ == 0) kind.first = warning();
+    }
+    const tinygltf::Light* light_of(const tinygltf::Node& node);
+    void add_sun(const tinygltf::Light& light, const std::string& name, const dmat4& world);
+    void add_lamp(const tinygltf::Light& light, const std::string& name, const dmat4& world);
+    /// False: the lamp is to be left out.
+    bool set_light(const tinygltf::Light& light, Lamp& lamp);
+    bool set_cone(const tinygltf::Light& light, const dmat4& world, Lamp& lamp);
+
     const tinygltf::Model& model_;
     Scene& scene_;
-    std::size_t lamps_ = 0;
-    std::string first_lamp_;
+    BrightestLamps lamps_;
+    std::array<Flawed, static_cast<std::size_t>(Flaw::count)> flaws_;
 };
 
 // ---- the node graph to a Scene's nodes: world matrices in double, instances, cycles refused ----

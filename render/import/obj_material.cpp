@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "render/import/finish.hpp"
+#include "render/import/lamps.hpp"
 #include "render/import/text_cursor.hpp"
 #include "rt/base/file.hpp"
 
@@ -86,6 +87,7 @@ void end_material(Reading& reading) {
     Material& material = reading.scene.materials[reading.current];
     if (!reading.opacity_map.empty()) merge_opacity(reading, material, reading.opacity_map);
     if (material.image != none) material.alpha = alpha_of(reading.scene.images[material.image]);
+    if (material.emission_image) material.emission = vec3(0);
     if (material.colour[3] < 1.0F) material.alpha = model::AlphaMode::blend;
     reading.opacity_map.clear();
 }
@@ -106,6 +108,18 @@ void read_colour(TextCursor& cursor, Material& material) {
     for (std::size_t i = 0; i < 3; ++i) material.colour[i] = std::clamp(c[i], 0.0F, 1.0F);
 }
 
+/// Linear, for it may be above 1: exporters write colour times strength.
+void read_emission(TextCursor& cursor, Material& material, Scene& scene) {
+    dvec3 c(0);
+    if (!cursor.number(c[0])) return;  // "spectral" and "xyz" forms: it does not glow
+    if (!cursor.number(c[1]) || !cursor.number(c[2])) c[1] = c[2] = c[0];
+    if (set_emission(material, c))
+        scene.warnings.push_back(
+            fmt::format("Material '{}': its emission Ke is not finite, negative or too strong; it is taken "
+                        "as {:.3g}, {:.3g}, {:.3g}",
+                        material.name, material.emission.r, material.emission.g, material.emission.b));
+}
+
 void read_statement(Reading& reading, TextCursor& cursor) {
     const std::string_view key = cursor.word();
     if (key == "newmtl") return begin_material(reading, cursor.line_text());
@@ -115,6 +129,10 @@ void read_statement(Reading& reading, TextCursor& cursor) {
     bool clamp = false;
     if (key == "Kd") {
         read_colour(cursor, material);
+    } else if (key == "Ke") {
+        read_emission(cursor, material, reading.scene);
+    } else if (key == "map_Ke") {
+        material.emission_image = true;
     } else if (key == "d") {
         if (cursor.number(value)) material.colour[3] = std::clamp(value, 0.0F, 1.0F);
     } else if (key == "Tr") {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "render/import/formats.hpp"
+#include "render/import/lamps.hpp"
 #include "render/import/stand_ins.hpp"
 
 namespace surefoot::importer {
@@ -74,6 +75,8 @@ void append(Scene& to, Scene&& from) {
     move_all(to.images, from.images);
     move_all(to.stand_ins, from.stand_ins);
     if (from.sun && (!to.sun || from.sun->intensity > to.sun->intensity)) to.sun = std::move(from.sun);
+    move_all(to.lamps, from.lamps);
+    keep_brightest(to);
     move_all(to.sources, from.sources);
     move_all(to.warnings, from.warnings);
     move_all(to.damage, from.damage);

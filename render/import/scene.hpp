@@ -27,6 +27,8 @@ struct Material {
     model::AlphaMode alpha = model::AlphaMode::opaque;
     bool two_sided = false;
     bool unlit = false;
+    vec3 emission{0};             ///< linear RGB of the light that it sends out by itself; finite, 0 or more, strength included
+    bool emission_image = false;  ///< the file spreads its glow by an image, which is not used: emission is 0
     std::vector<std::string> lacks = {};  ///< missing things that the file asks for: images, the material itself
 };
 
@@ -80,6 +82,21 @@ struct Sun {
     double intensity = 0;    ///< as the file has it, above 0
 };
 
+/// A light at one place: it shines in all directions, or as a spot. Falls off with the square of the distance.
+struct Lamp {
+    std::string name;
+    dvec3 at{0};                            ///< finite, metres in the world
+    dvec3 towards{0, -1, 0};                ///< unit; where a spot shines
+    vec3 colour{1};                         ///< linear RGB, 0..1, not black
+    double candela = 1;                     ///< above 0 and finite
+    double range_m = 0;                     ///< lights nothing beyond; 0: no limit
+    double cos_inner = -1, cos_outer = -1;  ///< of a spot: 1 >= cos_inner >= cos_outer >= 0; -1, -1: in all directions
+    [[nodiscard]] bool spot() const { return cos_outer >= 0; }
+};
+
+/// A scene has no more lamps than this.
+constexpr std::size_t max_lamps = 4096;
+
 /// An imported scene, in metres with +Y up.
 struct Scene {
     std::vector<Mesh> meshes;
@@ -87,7 +104,8 @@ struct Scene {
     std::vector<Material> materials;  ///< at least one
     std::vector<image::Image> images;
     std::vector<StandIn> stand_ins;
-    std::optional<Sun> sun;  ///< the brightest one
+    std::optional<Sun> sun;   ///< the brightest one
+    std::vector<Lamp> lamps;  ///< the brightest max_lamps, in the file's order
     std::vector<std::string> sources;
     std::vector<std::string> warnings;              ///< repaired or dropped data, one line each with counts
     std::vector<Damage> damage;                     ///< warnings about drawn things, which a person should repair
@@ -95,7 +113,7 @@ struct Scene {
     [[nodiscard]] std::uint64_t triangles() const;  ///< instances counted each
 };
 
-/// Adds all of one scene to another.
+/// Adds all of one scene to another. Of more than max_lamps lamps the brightest stay; a warning counts the others.
 void append(Scene& to, Scene&& from);
 
 /// By ending (formats.hpp), with the stand-ins listed beside each file (stand_ins.hpp). Several files become one scene.

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "render/import/scene.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -83,6 +85,19 @@ inline bool warns(const Scene& scene, const std::string& part) {
         if (warning.find(part) != std::string::npos) return true;
     }
     return false;
+}
+
+/// Through a file of this name.
+inline Result<Scene> import_bytes(const std::string& bytes, const std::string& name = "model.glb") {
+    const Folder folder;
+    return import_files({folder.write(name, bytes)}, {});
+}
+
+/// Of a file that must be readable.
+inline Scene import_good(const TriangleGltf& gltf) {
+    auto scene = import_bytes(gltf.file());
+    EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().text());
+    return scene.ok() ? std::move(*scene) : Scene{};
 }
 
 /// Where the real data is, if anywhere.

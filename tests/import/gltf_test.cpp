@@ -7,17 +7,6 @@
 namespace surefoot::importer::test {
 namespace {
 
-Result<Scene> import_bytes(const std::string& bytes, const std::string& name = "model.glb") {
-    const Folder folder;
-    return import_files({folder.write(name, bytes)}, {});
-}
-
-Scene import_good(const TriangleGltf& gltf) {
-    auto scene = import_bytes(gltf.file());
-    EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().text());
-    return scene.ok() ? std::move(*scene) : Scene{};
-}
-
 std::string error_of(const TriangleGltf& gltf) {
     auto scene = import_bytes(gltf.file());
     EXPECT_FALSE(scene.ok());
@@ -49,60 +38,6 @@ TEST(Gltf, HierarchyMultipliesInDoubleAndInstancesShareTheirMesh) {
     EXPECT_EQ(world_of(scene, 1, {1, 0, 0}), dvec3(6400002.25, 0, 0.125));
     EXPECT_NEAR(world_of(scene, 2, {1, 0, 0}).z, -1.0, 1e-12);
     EXPECT_FLOAT_EQ(scene.nodes[2].importance, 0.5F);
-}
-
-/// A triangle and nodes with these lights, each as JSON; light i belongs to node i + 1, turned by `rotation`.
-TriangleGltf with_lights(const std::string& lights, std::size_t count, const std::string& rotation = "[-0.5,0,0,0.8660254]") {
-    TriangleGltf gltf;
-    gltf.nodes = R"([{"mesh":0,"name":"thing"})";
-    gltf.scenes = R"([{"nodes":[0)";
-    for (std::size_t i = 0; i < count; ++i) {
-        gltf.nodes += R"(,{"name":"lamp","rotation":)" + rotation + R"(,"extensions":{"KHR_lights_punctual":{"light":)" +
-                      std::to_string(i) + "}}}";
-        gltf.scenes += "," + std::to_string(i + 1);
-    }
-    gltf.nodes += "]";
-    gltf.scenes += "]}]";
-    gltf.more = R"(,"extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[)" + lights + "]}}";
-    return gltf;
-}
-
-TEST(GltfLights, TheBrightestDistantOneIsTheSunAndLampsAreNamed) {
-    const Scene scene = import_good(with_lights(
-        R"({"type":"directional","intensity":2,"name":"moon"},{"type":"directional","intensity":5,"name":"noon"},
-           {"type":"directional","intensity":5,"name":"later"},{"type":"point","name":"bulb"},{"type":"point"})",
-        5));
-    ASSERT_TRUE(scene.sun.has_value());
-    EXPECT_EQ(scene.sun->name, "noon");
-    EXPECT_EQ(scene.sun->intensity, 5);
-    EXPECT_NEAR(scene.sun->towards.y, std::sqrt(3.0) / 2, 1e-6);  // -Z turned down by 60 degrees
-    EXPECT_NEAR(scene.sun->towards.z, 0.5, 1e-6);
-    EXPECT_TRUE(warns(scene, "2 lamps are not used, 'bulb' among them"));
-    EXPECT_EQ(scene.warnings.size(), 1U);
-    EXPECT_FALSE(import_good({}).sun.has_value());
-}
-
-TEST(GltfLights, BrokenOnesAreNamedAndTheSceneIsReadAllTheSame) {
-    const Scene dark = import_good(
-        with_lights(R"({"type":"directional","intensity":-1,"name":"hole"},{"type":"directional","intensity":0})", 3));
-    EXPECT_FALSE(dark.sun.has_value());
-    EXPECT_TRUE(warns(dark, "Light 'hole' is ignored: its intensity is -1"));
-    EXPECT_TRUE(warns(dark, "light 2 does not exist"));
-    TriangleGltf odd = with_lights(R"({"type":"directional"})", 1);
-    for (const char* number : {"1e300", "0.5", "-1", "\"0\""}) {
-        TriangleGltf one = odd;
-        const std::string known = R"("light":0)";
-        one.nodes.replace(one.nodes.find(known), known.size(), R"("light":)" + std::string(number));
-        const Scene scene = import_good(one);
-        EXPECT_FALSE(scene.sun.has_value()) << number;
-        EXPECT_TRUE(warns(scene, "does not exist")) << number;
-    }
-    const Scene night = import_good(with_lights(R"({"type":"directional","name":"set"})", 1, "[0.5,0,0,0.8660254]"));
-    EXPECT_FALSE(night.sun.has_value());
-    EXPECT_TRUE(warns(night, "Light 'set' is ignored: it shines from below the horizon"));
-    std::string many = R"({"type":"directional"})";
-    for (int i = 0; i < 499; ++i) many += R"(,{"type":"point"})";
-    EXPECT_TRUE(warns(import_good(with_lights(many, 500)), "499 lamps"));
 }
 
 TEST(Gltf, WhetherAWalkerIsStoppedIsHandedDown) {

@@ -109,6 +109,23 @@ TEST(Obj, TextureWithHolesIsMaskedAndMissingOnesAreWhite) {
     EXPECT_TRUE(lacks(*scene, "Texture 'no.png' is left white"));
 }
 
+TEST(Obj, WhatGlows) {
+    const Folder folder;
+    folder.write("m.mtl",
+                 "newmtl lamp\nKe 4 2 1\nnewmtl grey\nKe 0.5\nnewmtl odd\nKe 1 -1 nan\nnewmtl sign\nKe 1 1 1\nmap_Ke no.png\n");
+    const auto scene = import_files({folder.write("a.obj", "mtllib m.mtl\n" + square + "usemtl lamp\nf 1 2 3\n")}, {});
+    ASSERT_TRUE(scene.ok()) << scene.error().text();
+    ASSERT_GE(scene->materials.size(), 4U);
+    EXPECT_EQ(scene->materials[0].emission, vec3(4, 2, 1));
+    EXPECT_EQ(scene->materials[1].emission, vec3(0.5F));
+    EXPECT_EQ(scene->materials[2].emission, vec3(1, 0, 0));
+    EXPECT_EQ(scene->materials[3].emission, vec3(0));
+    EXPECT_TRUE(scene->materials[3].emission_image);
+    EXPECT_TRUE(warns(*scene, "Material 'odd': its emission Ke"));
+    EXPECT_TRUE(warns(*scene, "Material 'sign': its glow is left out"));
+    EXPECT_EQ(scene->warnings.size(), 2U);
+}
+
 TEST(Obj, VertexColoursAndNaNColours) {
     const Scene scene = import_text("v 0 0 0 1 0 0.5\nv 1 0 0 nan nan nan\nv 0 1 0\nf 1 2 3\n");
     const auto& colours = scene.meshes[0].primitives[0].colours;
