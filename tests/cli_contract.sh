@@ -136,6 +136,8 @@ expect 1 'over.obj: .*\.obj.*only read.*\.glb' scene forest --scale 0.3 -o over.
 refuse 'f.glb.*files to bake' bake f.glb -o ./f.glb
 refuse 'f.obj.*\.walk' bake f.glb -o f.obj
 expect 1 'nonexistent' scene forest -o /nonexistent/f.glb
+expect 2 '--lamps: Only the town has lamps' scene room --lamps -o lit.glb
+expect 1 'lit.ostf: .*holds no lamps.*\.glb' scene town --lamps -o lit.ostf
 expect 1 'nonexistent' calibrate --quick --plot /nonexistent/p.svg
 expect 1 'f.glb is a file' calibrate --state f.glb
 expect 1 'f.glb is a file' accuracy f.walk -o f.glb

@@ -16,11 +16,11 @@ struct SceneArguments {
     std::string name, out, statue;
     double scale = 1;
     std::uint64_t seed = 1;
-    bool json = false;
+    bool json = false, lamps = false;
 };
 
 int run_scene(const SceneArguments& a, const Context& context) {
-    if (auto ok = scenes::check_ending(a.out); !ok) return fail(ok.error());
+    if (auto ok = scenes::check_ending(a.out, a.lamps); !ok) return fail(ok.error());
     const std::string path = std::filesystem::path(a.out).replace_extension(".path.csv").string();
     for (const std::string& out : {a.out, path}) {
         if (auto ok = probe_writable(out); !ok) return fail(ok.error());
@@ -28,7 +28,10 @@ int run_scene(const SceneArguments& a, const Context& context) {
     if (!a.statue.empty() && a.name != scenes::gallery_name)
         return misuse({"--cow", "Only the gallery has a place for a statue",
                        "Remove the option, or write `surefoot scene gallery`", ErrorKind::misuse});
-    auto scene = a.statue.empty() ? scenes::generate(a.name, a.scale, a.seed)
+    if (a.lamps && a.name != scenes::town_name)
+        return misuse(
+            {"--lamps", "Only the town has lamps", "Remove the option, or write `surefoot scene town`", ErrorKind::misuse});
+    auto scene = a.statue.empty() ? scenes::generate(a.name, a.scale, a.seed, a.lamps)
                                   : scenes::generate_gallery(a.scale, a.seed, a.statue, terminal_progress(context));
     end_progress(context);
     if (!scene) return fail(scene.error());
@@ -44,6 +47,7 @@ int run_scene(const SceneArguments& a, const Context& context) {
                     {"file", a.out},
                     {"path", path},
                     {"triangles", triangles},
+                    {"lamps", scene->scene.lamps.size()},
                     {"objects", scene->scene.nodes.size()},
                     {"path_s", scene->path.duration_s()}});
     } else {
@@ -67,6 +71,7 @@ void add_scene(CLI::App& app, Context& context) {
         ->check(one_of(names));
     c->add_option("--cow", a->statue, "Of the gallery: model file of its statue, in place of a knot. It is made 1.2 m long")
         ->check(names_something());
+    c->add_flag("--lamps", a->lamps, "Of the town: its lamps shine, and windows glow. The file must be a .glb");
     c->add_option("--scale", a->scale, "Factor on the size of the scene")
         ->check(number_within(scenes::min_scale, scenes::max_scale))
         ->capture_default_str();

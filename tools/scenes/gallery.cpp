@@ -58,8 +58,14 @@ void place_statue(importer::Scene& statue) {
     }
     const dvec3 size = box.max - box.min;
     const double longest = std::max({size.x, size.y, size.z, 1e-9});
-    const dmat4 to_place = move(statue_at) * stretch(dvec3(statue_length_m / longest)) * move(-box.centre());
+    const double factor = statue_length_m / longest;
+    const dmat4 to_place = move(statue_at) * stretch(dvec3(factor)) * move(-box.centre());
     for (importer::Node& node : statue.nodes) node.world = to_place * node.world;
+    for (importer::Lamp& lamp : statue.lamps) {  // so that its surfaces get as much light as before
+        lamp.at = dvec3(to_place * dvec4(lamp.at, 1.0));
+        lamp.range_m *= factor;
+        lamp.candela *= factor * factor;
+    }
 }
 
 /// Each object comes into view alone, with nothing in view between them.

@@ -35,6 +35,14 @@ Index SceneMaker::material(const std::string& name, const Colour& colour, Index 
     return last_of(scene.materials.size());
 }
 
+Index SceneMaker::glowing(const std::string& name, Index like, const vec3& emission) {
+    importer::Material m = scene.materials[like];
+    m.name = name;
+    m.emission = emission;
+    scene.materials.push_back(std::move(m));
+    return last_of(scene.materials.size());
+}
+
 Index SceneMaker::mesh(importer::Mesh made) {
     for (importer::Primitive& p : made.primitives) {
         drop_needless(p, scene.materials[p.material]);

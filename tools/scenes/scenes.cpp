@@ -22,21 +22,25 @@ namespace {
 struct Maker {
     std::string_view name;
     GeneratedScene (*make)(double scale, std::uint64_t seed);
+    GeneratedScene (*make_lit)(double scale, std::uint64_t seed) = nullptr;  ///< with lamps; null: it has none
 };
 
-constexpr std::array makers{Maker{"forest", make_forest}, Maker{"room", make_room}, Maker{"town", make_town},
+constexpr std::array makers{Maker{"forest", make_forest}, Maker{"room", make_room},
+                            Maker{town_name, [](double scale, std::uint64_t seed) { return make_town(scale, seed, false); },
+                                  [](double scale, std::uint64_t seed) { return make_town(scale, seed, true); }},
                             Maker{"garden", make_garden},
                             Maker{gallery_name, [](double scale, std::uint64_t seed) { return make_gallery(scale, seed, {}); }}};
 
 struct Writer {
     std::string_view name;  ///< the ending of its files
     Result<void> (*write)(const std::string& file, const importer::Scene& scene);
+    bool holds_lamps;
 };
 
 constexpr std::array writers{
-    Writer{importer::glb_ending, write_glb},
+    Writer{importer::glb_ending, write_glb, true},
     Writer{importer::ostf_ending,
-           [](const std::string& file, const importer::Scene& scene) { return importer::write_ostf(file, scene, {}); }},
+           [](const std::string& file, const importer::Scene& scene) { return importer::write_ostf(file, scene, {}); }, false},
 };
 
 }  // namespace
@@ -48,14 +52,17 @@ std::vector<std::string> scene_names() {
     return names;
 }
 
-Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed) {
+Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed, bool lamps) {
     if (!(scale >= min_scale && scale <= max_scale))
         return Error{std::string(name), fmt::format("The scale {} is out of range", scale),
                      fmt::format("Choose {} to {}", min_scale, max_scale), ErrorKind::misuse};
     for (const Maker& maker : makers) {
         if (name != maker.name) continue;
-        GeneratedScene made = maker.make(scale, seed);
-        made.scene.sources.push_back(fmt::format("generated: {} at scale {}, seed {}", name, scale, seed));
+        if (lamps && maker.make_lit == nullptr)
+            return Error{std::string(name), "The scene has no lamps", fmt::format("Choose {}", town_name), ErrorKind::misuse};
+        GeneratedScene made = lamps ? maker.make_lit(scale, seed) : maker.make(scale, seed);
+        made.scene.sources.push_back(
+            fmt::format("generated: {} at scale {}, seed {}{}", name, scale, seed, lamps ? ", with lamps" : ""));
         return made;
     }
     return Error{std::string(name), "There is no scene of this name", "Choose one of " + names_in_words(makers),
@@ -77,9 +84,13 @@ Result<GeneratedScene> generate_gallery(double scale, std::uint64_t seed, const 
 
 std::string written_endings() { return names_in_words(writers); }
 
-Result<void> check_ending(const std::string& out) {
+Result<void> check_ending(const std::string& out, bool lamps) {
     const std::string ending = importer::ending_of(out);
-    if (find_named(writers, ending) != nullptr) return {};
+    const Writer* const writer = find_named(writers, ending);
+    if (writer != nullptr && lamps && !writer->holds_lamps)
+        return Error{out, fmt::format("A file with the ending '{}' holds no lamps", ending),
+                     fmt::format("Choose {}", importer::glb_ending), ErrorKind::unsupported};
+    if (writer != nullptr) return {};
     const std::string remedy = "Choose one of " + written_endings();
     if (importer::format_of(out) != nullptr)
         return Error{out, fmt::format("Scenes are not written as {}: this format is only read", ending), remedy,
@@ -88,7 +99,7 @@ Result<void> check_ending(const std::string& out) {
 }
 
 Result<void> write_scene(const std::string& out, const GeneratedScene& generated) {
-    if (auto ok = check_ending(out); !ok) return ok;
+    if (auto ok = check_ending(out, false); !ok) return ok;
     if (auto written = find_named(writers, importer::ending_of(out))->write(out, generated.scene); !written) return written;
     return write_path(std::filesystem::path(out).replace_extension(".path.csv").string(), generated.path);
 }

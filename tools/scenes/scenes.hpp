@@ -21,7 +21,7 @@ struct GeneratedScene {
     Path path;              ///< 60 s at scale 1, at walking height but for its overlook; smooth
 };
 
-constexpr std::string_view gallery_name = "gallery";
+constexpr std::string_view gallery_name = "gallery", town_name = "town";
 
 /// forest, room, town, garden, gallery.
 std::vector<std::string> scene_names();
@@ -29,8 +29,9 @@ std::vector<std::string> scene_names();
 constexpr double min_scale = 0.01, max_scale = 200.0;
 
 /// scale > 0 multiplies what there is (trees, rooms' area, blocks of houses), 1 is the size named above; 0.01 to 200.
-/// Errors: unknown name, scale out of range.
-Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed);
+/// `lamps`: as in the evening, with lamps that shine and windows that glow. Errors: unknown name, scale out of range, a scene
+/// that has no lamps.
+Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed, bool lamps = false);
 
 /// The gallery with another statue, of a model file that the importer reads. Errors: of the importer, scale out of range.
 Result<GeneratedScene> generate_gallery(double scale, std::uint64_t seed, const std::string& statue_file,
@@ -38,12 +39,13 @@ Result<GeneratedScene> generate_gallery(double scale, std::uint64_t seed, const 
 
 /// ".glb, .ostf".
 std::string written_endings();
-/// Whether a scene can be written under this name.
-Result<void> check_ending(const std::string& out);
-/// By ending; and beside it `out` with its ending replaced by .path.csv.
+/// Whether a scene can be written under this name, and its lamps too.
+Result<void> check_ending(const std::string& out, bool lamps);
+/// By ending; and beside it `out` with its ending replaced by .path.csv. OSTF holds neither lamps nor glow: they are left out.
 Result<void> write_scene(const std::string& out, const GeneratedScene& generated);
 
 /// glTF 2.0 binary: shared meshes, node tree with matrices and names, PNG pictures, vertex colours as linear 16-bit numbers.
+/// Each lamp becomes a root node behind all others.
 Result<void> write_glb(const std::string& file, const importer::Scene& scene);
 
 }  // namespace surefoot::scenes

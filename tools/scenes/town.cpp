@@ -21,7 +21,11 @@ constexpr int houses_a_row = 4;
 constexpr double eye = 1.7 + kerb;
 constexpr int visited_plot = 2;  ///< of the south row of the block at 0, 0: the house that the path enters
 
-TownStuff make_town_stuff(SceneMaker& maker, std::uint64_t seed) {
+/// Of a lit town, linear RGB: the warm white of its lamps, and the light of what glows.
+constexpr vec3 warm(1.0F, 0.72F, 0.42F);
+constexpr float lamp_glow = 4.0F, window_glow = 2.0F;
+
+TownStuff make_town_stuff(SceneMaker& maker, std::uint64_t seed, bool lit) {
     TownStuff t;
     t.stuff = make_stuff(maker, seed);
     const auto textured = [&](const char* name, image::Image image) {
@@ -37,6 +41,8 @@ TownStuff make_town_stuff(SceneMaker& maker, std::uint64_t seed) {
     t.grass = textured("grass", speckle(seed + 57, rgb(74, 112, 46), rgb(128, 156, 74), "grass"));
     t.water = maker.material("water", {255, 255, 255, 170}, none, model::AlphaMode::blend, true);
     t.plants = {maker.material("bark"), t.stuff.leaves};
+    t.lamp_glass = lit ? maker.glowing("lamp glass", t.stuff.plain, lamp_glow * warm) : t.stuff.plain;
+    if (lit) t.lit_glass = maker.glowing("lit glass", t.stuff.glass, window_glow * warm);
     return t;
 }
 
@@ -111,6 +117,8 @@ struct Town {
     Detail detail;
     Random random;
     std::uint64_t seed;
+    bool lit = false;
+    Random choice;       ///< of lit windows: the layout is the same without them
     double built = 1.0;  ///< share of the plots that have a house: below the smallest town of four blocks
     std::vector<House> houses{};
     std::vector<Index> trees{};
@@ -153,10 +161,39 @@ void make_meshes(Town& town) {
     town.ground = town.maker.mesh(block_ground(town.stuff));
 }
 
-void place_house(Town& town, Index parent, int kind, int number, const dmat4& where) {
+Index place_house(Town& town, Index parent, int kind, int number, const dmat4& where) {
+    const House& house = town.houses[static_cast<std::size_t>(kind)];
     const Index group = town.maker.node(fmt::format("house {}", number), parent, none, where);
-    for (const House::HousePart& part : town.houses[static_cast<std::size_t>(kind)].parts)
-        town.maker.node(part.name, group, part.mesh, part.where);
+    for (const House::HousePart& part : house.parts) {
+        Index mesh = part.mesh;
+        if (!house.lit_windows.empty() && part.name == std::string_view("windows"))
+            mesh = house.lit_windows[town.choice.below(static_cast<std::uint32_t>(house.lit_windows.size()))];
+        town.maker.node(part.name, group, mesh, part.where);
+    }
+    return group;
+}
+
+/// The light falls down and aside, not on the lamp's own hood.
+void place_street_lamp(Town& town, Index parent, const dmat4& where) {
+    const Index node = town.maker.node("street lamp", parent, town.lamp, where);
+    if (!town.lit) return;
+    importer::Lamp lamp{.name = "street lamp", .colour = warm, .candela = 60, .range_m = 16};
+    lamp.at = dvec3(town.maker.scene.nodes[node].world * dvec4(street_lamp_light_m, 1.0));
+    lamp.cos_inner = 0.64;  // about 50 and 80 degrees
+    lamp.cos_outer = 0.17;
+    town.maker.scene.lamps.push_back(std::move(lamp));
+}
+
+/// A bulb that glows in the shade of the kitchen's pendant lamp, and its light a little below.
+void light_kitchen(Town& town, Index house) {
+    MeshMaker maker("bulb");
+    maker.brush = {town.stuff.lamp_glass, rgb(255, 248, 220), dmat4(1.0), 1.0};
+    maker.ellipsoid({0, 0, 0}, dvec3(0.056), 12, 8);
+    const Index mesh = town.maker.mesh(maker.take());
+    const Index node = town.maker.node("bulb", house, mesh, move(kitchen_lamp_m - dvec3(0, 0.94, 0)));
+    importer::Lamp lamp{.name = "kitchen lamp", .colour = warm, .candela = 40, .range_m = 12};
+    lamp.at = dvec3(town.maker.scene.nodes[node].world * dvec4(0, -0.12, 0, 1));
+    town.maker.scene.lamps.push_back(std::move(lamp));
 }
 
 void plant(Town& town, Index parent, std::size_t tree, double x, double z) {
@@ -173,7 +210,7 @@ void line_streets(Town& town, Index parent) {
             if (s == 19.0) {
                 plant(town, parent, 0, x + (std::abs(angle) == pi / 2 ? 0 : 3.6), z);
             } else {
-                town.maker.node("street lamp", parent, town.lamp, move({x, kerb, z}) * turn_y(angle));
+                place_street_lamp(town, parent, move({x, kerb, z}) * turn_y(angle));
             }
         }
     }
@@ -210,8 +247,11 @@ void block_of_houses(Town& town, Index parent, bool first_block, int& number) {
                                          move({x + house_width_m, kerb, pavement}) * turn_y(pi)};
         for (std::size_t side = 0; side < plots.size(); ++side) {
             const bool visited = first_block && side == 0 && i == visited_plot;
-            if (visited || town.random.unit() < town.built)
-                place_house(town, parent, static_cast<int>(town.random.below(house_kinds)), number, plots[side]);
+            if (visited || town.random.unit() < town.built) {
+                const int kind = static_cast<int>(town.random.below(house_kinds));
+                const Index house = place_house(town, parent, kind, number, plots[side]);
+                if (visited && town.lit) light_kitchen(town, house);
+            }
             ++number;
         }
     }
@@ -239,7 +279,7 @@ void square(Town& town, Index parent) {
     for (const double x : {9.0, 14.5, 24.0, 29.0}) plant(town, parent, 0, x, 2.6);
     for (const double z : {10.0, 16.5}) plant(town, parent, 0, 3.0, z);
     for (const auto& [x, z] : {std::pair{11.5, 7.0}, {26.5, 7.0}, {11.5, 19.5}, {26.5, 19.5}})
-        m.node("street lamp", parent, town.lamp, move({x, kerb, z}) * turn_y(town.random.range(0, 6)));
+        place_street_lamp(town, parent, move({x, kerb, z}) * turn_y(town.random.range(0, 6)));
 }
 
 /// Fields and trees around, so that streets do not end in nothing.
@@ -311,12 +351,13 @@ Path walk_through() {
 
 }  // namespace
 
-GeneratedScene make_town(double scale, std::uint64_t seed) {
+GeneratedScene make_town(double scale, std::uint64_t seed, bool lit) {
     SceneMaker maker;
     const int count = std::max(2, static_cast<int>(std::lround(3.0 * std::sqrt(scale))));
     const int first = -((count - 2) / 2);
     const Detail detail{0.2 * std::clamp(std::sqrt(scale), 0.3, 1.0)};
-    Town town{maker, make_town_stuff(maker, seed), detail, Random(seed), seed, std::min(1.0, 9.0 * scale / 4.0)};
+    Town town{maker, make_town_stuff(maker, seed, lit), detail, Random(seed), seed, lit, Random(seed + 6)};
+    town.built = std::min(1.0, 9.0 * scale / 4.0);
     make_meshes(town);
     int number = 1;
     for (int j = first; j < first + count; ++j) {

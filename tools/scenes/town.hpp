@@ -10,13 +10,16 @@
 namespace surefoot::scenes {
 
 /// 9 * scale blocks, each 38 m wide with 6 m of road between; the square is the block at 44, 44 m.
-GeneratedScene make_town(double scale, std::uint64_t seed);
+/// `lit`: street lamps shine, the kitchen on the path has a lamp, and about two windows of five glow. All else stays as it is.
+GeneratedScene make_town(double scale, std::uint64_t seed, bool lit);
 
 /// Outdoor materials beside a Stuff's; plaster and tiles are tinted by the vertices.
 struct TownStuff {
     Stuff stuff;
     PlantMaterials plants;  ///< leaves are masked sprays
     Index brick = 0, plaster = 0, tiles = 0, floor = 0, paving = 0, cobbles = 0, asphalt = 0, grass = 0, water = 0;
+    Index lamp_glass = 0;              ///< tinted by the vertices; glows in a lit town
+    Index lit_glass = importer::none;  ///< of windows; none in a town that is not lit
 };
 
 /// One kind of house, its furniture included: a group of meshes to be placed again and again. Its front is the plane
@@ -29,11 +32,13 @@ struct House {
         dmat4 where;
     };
     std::vector<HousePart> parts;
+    std::vector<Index> lit_windows{};  ///< in place of the part `windows`: other panes glow in each; empty if the town is not lit
 };
 
 constexpr double house_width_m = 8.5, house_depth_m = 9.0;
 constexpr double house_door_m = 1.5;  ///< middle of the front door
 constexpr int house_kinds = 4;
+constexpr dvec3 kitchen_lamp_m(6.6, 2.65, -6.4);  ///< where the pendant lamp over the kitchen's table hangs from
 /// Furniture made so far, by what it looks like: all houses share it.
 using FurnitureMade = std::unordered_map<std::uint64_t, Index>;
 
@@ -47,6 +52,7 @@ constexpr double balcony_m = 4.5;  ///< height of the town hall's balcony
 importer::Mesh town_hall(const TownStuff& stuff, const Detail& detail);
 importer::Mesh fountain(const TownStuff& stuff, const Detail& detail);     ///< basin of 4 m radius
 importer::Mesh street_lamp(const TownStuff& stuff, const Detail& detail);  ///< arm towards +z
+constexpr dvec3 street_lamp_light_m(0, 3.05, 0.7);                         ///< below the head of a street lamp
 importer::Mesh bench(const TownStuff& stuff, const Detail& detail);
 importer::Mesh market_stall(const TownStuff& stuff, const Detail& detail, const Colour& stripe);
 importer::Mesh hedge(const TownStuff& stuff, double length, std::uint64_t seed);

@@ -15,6 +15,9 @@ namespace {
 constexpr double storey = 2.9, slab = 0.25, outer = 0.2, inner = 0.14;
 constexpr double w = house_width_m, d = house_depth_m;
 constexpr double hall_wall = 2.8, middle_wall = -4.7;  ///< between hall and rooms; between front and back room
+/// Of the windows, those that glow; and how many choices of them each kind of house has.
+constexpr double lit_share = 0.4;
+constexpr int lit_choices = 4;
 constexpr double stair_x0 = 0.2, stair_x1 = 1.15, stair_z0 = -3.0, stair_z1 = -7.2;
 
 struct Kind {
@@ -172,9 +175,11 @@ void flower_box(MeshMaker& maker, const TownStuff& stuff, double x, double y, do
     }
 }
 
-/// Windows, shutters, flowers, the door's lining: what a façade wears.
-importer::Mesh fittings_mesh(const TownStuff& stuff, const Kind& kind, int number, Random& random) {
-    MeshMaker maker(fmt::format("house {} windows", number));
+/// Windows, shutters, flowers, the door's lining: what a façade wears. `panes` chooses those that glow; null: none does.
+importer::Mesh fittings_mesh(const TownStuff& stuff, const Kind& kind, const std::string& name, Random& random, Random* panes) {
+    MeshMaker maker(name);
+    Stuff lit = stuff.stuff;
+    lit.glass = stuff.lit_glass;
     for (int level = 0; level < kind.storeys; ++level) {
         for (const bool front : {true, false}) {
             for (const Hole& hole : front ? front_holes(level) : back_holes(level)) {
@@ -185,7 +190,8 @@ importer::Mesh fittings_mesh(const TownStuff& stuff, const Kind& kind, int numbe
                     door_lining(maker, stuff.stuff, width, height, outer, kind.trim);
                     continue;
                 }
-                window(maker, stuff.stuff, width, height, width > 2 ? 3 : 2, 3, kind.trim);
+                const bool glows = panes != nullptr && panes->unit() < lit_share;
+                window(maker, glows ? lit : stuff.stuff, width, height, width > 2 ? 3 : 2, 3, kind.trim);
                 maker.brush.frame = maker.brush.frame * move({0, 0, 0.5 * outer});
                 if (kind.shutters && width < 2) {
                     shutter(maker, stuff.stuff, kind.shutter, -0.5 * width - 0.04, 0, 0.5 * width, height);
@@ -259,7 +265,7 @@ void furnish_kitchen(const Furnisher& f, int kind) {
         if (x > 6.5) f.put("plate", plate(s, f.detail), {x, 0.752, z < -6.4 ? z + 0.2 : z - 0.2});
     }
     f.put("teapot", teapot(s, f.detail), {6.75, 0.752, -6.4}, 0.7);
-    f.put("pendant lamp", pendant_lamp(s, f.detail), {6.6, storey - slab, -6.4});
+    f.put("pendant lamp", pendant_lamp(s, f.detail), kitchen_lamp_m);
     if (kind % 2 == 0) f.put("vase of flowers", vase_of_flowers(s, f.detail, 6), {6.3, 0.752, -6.38});
     f.put("picture", picture(s, kind + 1, 0.56, 0.42), {w - 0.205, 1.6, -6.2}, -pi / 2);
 }
@@ -282,6 +288,24 @@ void furnish_upstairs(const Furnisher& f, int kind, int level) {
     f.put("picture", picture(s, kind + level, 0.8, 0.6), {hall_wall - 0.072, y + 1.5, -4.2}, -pi / 2);
 }
 
+/// The same flowers in each choice of lit windows, and the same random numbers behind it as without them.
+void add_windows(SceneMaker& maker, const TownStuff& stuff, House& house, int kind, std::uint64_t seed, Random& random) {
+    const Kind& k = kinds[static_cast<std::size_t>(kind)];
+    const std::string name = fmt::format("house {} windows", kind);
+    const Random flowers = random;
+    if (stuff.lit_glass == importer::none) {
+        house.parts.push_back({"windows", maker.mesh(fittings_mesh(stuff, k, name, random, nullptr)), dmat4(1.0)});
+        return;
+    }
+    Random panes(hash_bytes(std::as_bytes(std::span(name)), fnv1a(fnv_start, seed)));
+    for (int choice = 0; choice < lit_choices; ++choice) {
+        random = flowers;
+        importer::Mesh mesh = fittings_mesh(stuff, k, fmt::format("{}, lit {}", name, choice), random, &panes);
+        house.lit_windows.push_back(maker.mesh(std::move(mesh)));
+    }
+    house.parts.push_back({"windows", house.lit_windows.front(), dmat4(1.0)});
+}
+
 }  // namespace
 
 House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail, int kind, std::uint64_t seed,
@@ -290,7 +314,7 @@ House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail
     Random random(seed + static_cast<std::uint64_t>(kind));
     House house;
     house.parts.push_back({"walls", maker.mesh(walls_mesh(stuff, k, kind)), dmat4(1.0)});
-    house.parts.push_back({"windows", maker.mesh(fittings_mesh(stuff, k, kind, random)), dmat4(1.0)});
+    add_windows(maker, stuff, house, kind, seed, random);
     // Hinged in the doorway, standing wide open into the hall, along its west side.
     house.parts.push_back({"door", maker.mesh(door_leaf(stuff.stuff, 0.96, 2.12, k.door, detail)),
                            move({house_door_m - 0.48, 0, -outer}) * turn_y(0.5 * pi - 0.08)});

@@ -149,6 +149,7 @@ importer::Mesh street_lamp(const TownStuff& stuff, const Detail& detail) {
     maker.brush.frame = move({0, 3.18, 0.7});
     maker.lathe(std::array{dvec2(0.2, 0.42), dvec2(0.12, 0.5), dvec2(0.03, 0.54)}, detail.cut(16, 8));
     maker.lathe(std::array{dvec2(0, -0.05), dvec2(0.1, 0), dvec2(0.12, 0.05)}, detail.cut(16, 8));
+    maker.brush.material = stuff.lamp_glass;
     maker.brush.colour = rgb(255, 240, 196);
     maker.lathe(std::array{dvec2(0.1, 0.04), dvec2(0.17, 0.42)}, detail.cut(16, 8));
     return maker.take();

@@ -1,6 +1,9 @@
 // A scene as glTF 2.0 binary, written with the same bytes for the same scene.
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -79,10 +82,20 @@ private:
             if (m.alpha == model::AlphaMode::mask) out["alphaCutoff"] = m.alpha_cutoff;
             if (m.unlit) {
                 out["extensions"]["KHR_materials_unlit"] = json::object();
-                root_["extensionsUsed"] = {"KHR_materials_unlit"};
+                uses("KHR_materials_unlit");
             }
+            if (m.emission != vec3(0)) emission(m.emission, out);
             root_["materials"].push_back(std::move(out));
         }
+    }
+
+    /// The factor may not be above 1: the rest is its strength.
+    void emission(const vec3& light, json& material) {
+        const float strength = std::max({light.r, light.g, light.b, 1.0F});
+        material["emissiveFactor"] = {light.r / strength, light.g / strength, light.b / strength};
+        if (strength == 1.0F) return;
+        material["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
+        uses("KHR_materials_emissive_strength");
     }
 
     json attributes(const importer::Primitive& p) {
@@ -131,6 +144,40 @@ private:
         }
     }
 
+    /// A node that shines along its -Z. Lamps that differ in nothing but their place share a light.
+    json placed(const importer::Lamp& lamp) {
+        json light{{"name", lamp.name},
+                   {"type", lamp.spot() ? "spot" : "point"},
+                   {"color", {lamp.colour.r, lamp.colour.g, lamp.colour.b}},
+                   {"intensity", lamp.candela}};
+        if (lamp.range_m > 0) light["range"] = lamp.range_m;
+        if (lamp.spot())
+            light["spot"] = {{"innerConeAngle", std::acos(lamp.cos_inner)}, {"outerConeAngle", std::acos(lamp.cos_outer)}};
+        json& lights = root_["extensions"]["KHR_lights_punctual"]["lights"];
+        const auto [known, added] = light_numbers_.try_emplace(light.dump(), lights.size());
+        if (added) lights.push_back(std::move(light));
+        uses("KHR_lights_punctual");
+        json out{{"name", lamp.name}, {"translation", {lamp.at.x, lamp.at.y, lamp.at.z}}};
+        if (lamp.spot()) {
+            const dquat q = from_forwards(lamp.towards);
+            out["rotation"] = {q.x, q.y, q.z, q.w};
+        }
+        out["extensions"]["KHR_lights_punctual"]["light"] = known->second;
+        return out;
+    }
+
+    /// Turns -Z to a direction.
+    static dquat from_forwards(const dvec3& towards) {
+        const dvec3 forwards(0, 0, -1);
+        const dquat q(1 + glm::dot(forwards, towards), glm::cross(forwards, towards));
+        return glm::length(q) > 1e-9 ? glm::normalize(q) : dquat(0, 0, 1, 0);
+    }
+
+    void uses(const char* extension) {
+        json& used = root_["extensionsUsed"];
+        if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
+    }
+
     void nodes() {
         json roots = json::array(), list = json::array();
         for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
@@ -150,6 +197,10 @@ private:
             } else {
                 list[node.parent]["children"].push_back(i);
             }
+        }
+        for (const importer::Lamp& lamp : scene_.lamps) {
+            roots.push_back(list.size());
+            list.push_back(placed(lamp));
         }
         root_["nodes"] = std::move(list);
         root_["scenes"] = json::array({{{"nodes", std::move(roots)}}});
@@ -184,6 +235,7 @@ private:
 
     const importer::Scene& scene_;
     json root_;
+    std::map<std::string, std::size_t> light_numbers_;  ///< by their JSON
     std::vector<std::byte> binary_;
 };
 
