@@ -175,11 +175,14 @@ void flower_box(MeshMaker& maker, const TownStuff& stuff, double x, double y, do
     }
 }
 
-/// Windows, shutters, flowers, the door's lining: what a façade wears. `panes` chooses those that glow; null: none does.
-importer::Mesh fittings_mesh(const TownStuff& stuff, const Kind& kind, const std::string& name, Random& random, Random* panes) {
+/// Windows, shutters, flowers, the door's lining: what a façade wears. `panes` has one entry a window: whether
+/// it glows. Empty: none does.
+importer::Mesh fittings_mesh(const TownStuff& stuff, const Kind& kind, const std::string& name, Random& random,
+                             const std::vector<bool>& panes) {
     MeshMaker maker(name);
     Stuff lit = stuff.stuff;
     lit.glass = stuff.lit_glass;
+    std::size_t windows = 0;
     for (int level = 0; level < kind.storeys; ++level) {
         for (const bool front : {true, false}) {
             for (const Hole& hole : front ? front_holes(level) : back_holes(level)) {
@@ -190,7 +193,7 @@ importer::Mesh fittings_mesh(const TownStuff& stuff, const Kind& kind, const std
                     door_lining(maker, stuff.stuff, width, height, outer, kind.trim);
                     continue;
                 }
-                const bool glows = panes != nullptr && panes->unit() < lit_share;
+                const bool glows = !panes.empty() && panes[windows++];
                 window(maker, glows ? lit : stuff.stuff, width, height, width > 2 ? 3 : 2, 3, kind.trim);
                 maker.brush.frame = maker.brush.frame * move({0, 0, 0.5 * outer});
                 if (kind.shutters && width < 2) {
@@ -288,19 +291,38 @@ void furnish_upstairs(const Furnisher& f, int kind, int level) {
     f.put("picture", picture(s, kind + level, 0.8, 0.6), {hall_wall - 0.072, y + 1.5, -4.2}, -pi / 2);
 }
 
+/// Whether each window of a house glows: always the same share of them, at random places.
+std::vector<bool> lit_panes(const Kind& kind, Random& random) {
+    std::size_t windows = 0;
+    for (int level = 0; level < kind.storeys; ++level) {
+        for (const auto& holes : {front_holes(level), back_holes(level)})
+            windows +=
+                static_cast<std::size_t>(std::count_if(holes.begin(), holes.end(), [](const Hole& h) { return h.is_window; }));
+    }
+    std::vector<bool> panes(windows, false);
+    std::fill_n(panes.begin(), std::lround(lit_share * static_cast<double>(windows)), true);
+    for (std::size_t i = windows; i-- > 1;) {  // Fisher and Yates
+        const std::size_t other = random.below(static_cast<std::uint32_t>(i + 1));
+        const bool kept = panes[i];
+        panes[i] = panes[other];
+        panes[other] = kept;
+    }
+    return panes;
+}
+
 /// The same flowers in each choice of lit windows, and the same random numbers behind it as without them.
 void add_windows(SceneMaker& maker, const TownStuff& stuff, House& house, int kind, std::uint64_t seed, Random& random) {
     const Kind& k = kinds[static_cast<std::size_t>(kind)];
     const std::string name = fmt::format("house {} windows", kind);
     const Random flowers = random;
     if (stuff.lit_glass == importer::none) {
-        house.parts.push_back({"windows", maker.mesh(fittings_mesh(stuff, k, name, random, nullptr)), dmat4(1.0)});
+        house.parts.push_back({"windows", maker.mesh(fittings_mesh(stuff, k, name, random, {})), dmat4(1.0)});
         return;
     }
-    Random panes(hash_bytes(std::as_bytes(std::span(name)), fnv1a(fnv_start, seed)));
+    Random places(hash_bytes(std::as_bytes(std::span(name)), fnv1a(fnv_start, seed)));
     for (int choice = 0; choice < lit_choices; ++choice) {
         random = flowers;
-        importer::Mesh mesh = fittings_mesh(stuff, k, fmt::format("{}, lit {}", name, choice), random, &panes);
+        importer::Mesh mesh = fittings_mesh(stuff, k, fmt::format("{}, lit {}", name, choice), random, lit_panes(k, places));
         house.lit_windows.push_back(maker.mesh(std::move(mesh)));
     }
     house.parts.push_back({"windows", house.lit_windows.front(), dmat4(1.0)});
