@@ -5,7 +5,10 @@
 #include <atomic>
 #include <nlohmann/json.hpp>
 
+#include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
+#include "rt/base/path.hpp"
+#include "tests/accuracy/effect_scene.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/text_pieces.hpp"
 #include "tests/walk/walk_fixture.hpp"
@@ -46,6 +49,11 @@ TEST(EffectWorth, EachEffectIsDrawnWithAndWithoutAndTheRestIsSaidToBeAbsent) {
         EXPECT_NE(e.worth.with, e.worth.without) << e.name;
     }
     EXPECT_GE(shown, 2U) << "the forest is lit and has colours";
+    EXPECT_EQ(report->use_frames, min_use_poses);
+    for (const EffectWorth& e : report->effects) {
+        EXPECT_EQ(e.where.empty(), e.triangles == 0) << e.name;
+        EXPECT_EQ(e.frames_share > 0, e.triangles_share > 0) << e.name;
+    }
     const test::TemporaryFolder folder;
     ASSERT_TRUE(write_effects_page(folder / "page", *report).ok());
     const auto json = nlohmann::json::parse(*read_text(folder / "page/effects.json"));
@@ -54,6 +62,59 @@ TEST(EffectWorth, EachEffectIsDrawnWithAndWithoutAndTheRestIsSaidToBeAbsent) {
     const std::string page = *read_text(folder / "page/index.html");
     for (const EffectWorth& e : report->effects) EXPECT_NE(page.find("<td>" + e.name + "</td>"), std::string::npos) << e.name;
     EXPECT_EQ(test::count_of(page, "<figcaption>with</figcaption>"), shown + 1);
+    for (const char* way : {"all on", "as called for", "bare"})
+        EXPECT_NE(page.find(std::string("<tr><td>") + way + "</td>"), std::string::npos) << way;
+    for (const char* way : {"all_on", "as_called_for", "bare"}) EXPECT_GT(json["ways"][way]["ms"], 0) << way;
+    for (const EffectWorth& e : report->effects) EXPECT_NE(page.find(e.reason), std::string::npos) << e.name;
+}
+
+/// The three ways and the shares of a model whose figures are known.
+TEST(EffectWorth, AllOnShowsTheSamePictureByFewerPrograms) {
+    const test::TemporaryFolder folder;
+    PlacesRequest request = of_the_forest();
+    request.model_file = folder / "three.walk";
+    request.path_file = folder / "three.csv";
+    ASSERT_TRUE(model::write_walk(request.model_file, test::EffectScene().model).ok());
+    Path path;
+    for (const double second : {0.0, 1.0}) path.samples.push_back({second, Pose{}});
+    for (PathSample& sample : path.samples) sample.pose.position = dvec3(0, 0, 12);
+    ASSERT_TRUE(write_path(request.path_file, path).ok());
+    const auto report = measure_effects(request, {});
+    ASSERT_TRUE(report.ok()) << report.error().text();
+
+    const ThreeWays& w = report->ways;
+    EXPECT_EQ(w.as_called_for.programs, 4U) << "the cluster's form has one of its own";
+    EXPECT_EQ(w.all_on.programs, 2U) << "with light and without";
+    EXPECT_EQ(w.bare.programs, 1U);
+    EXPECT_EQ(w.as_called_for.batches, 3) << "bare, textured, lit";
+    EXPECT_EQ(w.all_on.batches, 2);
+    EXPECT_EQ(w.bare.batches, 1);
+    EXPECT_EQ(w.all_on.difference.psnr_db, report::max_psnr_db) << "nothing changes";
+    EXPECT_TRUE(w.all_on.difference.with.empty());
+    EXPECT_LT(w.bare.difference.psnr_db, 40);
+    for (const Way* way : {&w.all_on, &w.as_called_for, &w.bare}) {
+        EXPECT_GT(way->ms, 0);
+        EXPECT_GE(way->state_changes, way->batches) << "each batch begins with a change";
+    }
+
+    EXPECT_EQ(report->effects[0].name, "texture");
+    EXPECT_DOUBLE_EQ(report->effects[0].frames_share, 1);
+    EXPECT_DOUBLE_EQ(report->effects[0].triangles_share, 12.0 / 25);
+    ASSERT_EQ(report->effects[0].where.size(), 1U);
+    EXPECT_EQ(report->effects[0].where[0].name, "lamp");
+    EXPECT_EQ(report->effects[1].frames_share, 0) << "no full detail has vertex colours";
+    EXPECT_TRUE(report->effects[1].where.empty());
+    EXPECT_FALSE(report->effects[3].called_for);
+
+    ASSERT_TRUE(write_effects_page(folder / "page", *report).ok());
+    const auto json = nlohmann::json::parse(*read_text(folder / "page/effects.json"));
+    EXPECT_EQ(json["ways"]["as_called_for"]["programs"], 4);
+    EXPECT_EQ(json["ways"]["all_on"]["psnr_db"], nullptr) << "equal";
+    EXPECT_DOUBLE_EQ(json["effects"][0]["triangles_share"].get<double>(), 12.0 / 25);
+    EXPECT_EQ(json["effects"][0]["where"][0]["objects"], 2);
+    const std::string page = *read_text(folder / "page/index.html");
+    EXPECT_NE(page.find("lamp (2×): 100 %"), std::string::npos);
+    EXPECT_NE(page.find("coarse forms alone"), std::string::npos);
 }
 
 TEST(EffectWorth, StopsWhereTheUserSaysSo) {

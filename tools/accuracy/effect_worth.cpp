@@ -1,25 +1,20 @@
-// Each effect switched off alone, then all of them, in turns with the whole picture.
+// How often each effect is in use, then each switched off alone, in turns with the whole picture.
 #include "tools/accuracy/effect_worth.hpp"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <utility>
 
 #include "render/effects/effects.hpp"
-#include "render/measure/flip.hpp"
-#include "render/measure/image_metrics.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/statistics.hpp"
 #include "rt/clock/clock.hpp"
-#include "tools/report/page_parts.hpp"
-#include "tools/report/report.hpp"
 #include "tools/walk/path_source.hpp"
 
 namespace surefoot::accuracy {
 
 namespace {
-
-constexpr int picture_quality = 85;
 
 /// Draws places with and without some effects.
 class Comparing {
@@ -27,8 +22,8 @@ public:
     Comparing(const PlacesRequest& request, const std::vector<Pose>& poses, const Progress& progress)
         : request_(request), poses_(poses), progress_(progress) {}
 
-    /// Leaves `off` out. shown_at, if given, counts the places whose full detail has any of it.
-    Result<WithAndWithout> without(model::EffectMask off, EffectReport& report, std::uint32_t* shown_at) {
+    /// Leaves `off` out. shown_at counts the places whose full detail has any of it.
+    Result<WithAndWithout> without(model::EffectMask off, std::uint32_t& shown_at) {
         model::WalkFileInfo file;
         auto model = model::read_walk(request_.model_file, &file);
         if (!model) return model.error();
@@ -36,43 +31,30 @@ public:
         options.device.switches = {off};
         auto opened = open_engine_of_places(request_, std::move(*model), file.hash, options);
         if (!opened) return opened.error();
-        report.machine = opened->machine;
-        report.uncalibrated = opened->uncalibrated;
         Engine& engine = *opened->engine;
         engine.device().bind();
-        report.renderer = engine.device().renderer();
         auto found = at_all_places(engine, off, shown_at);
         engine.device().release();
         return found;
     }
 
 private:
-    Result<WithAndWithout> at_all_places(Engine& engine, model::EffectMask off, std::uint32_t* shown_at) {
+    Result<WithAndWithout> at_all_places(Engine& engine, model::EffectMask off, std::uint32_t& shown_at) {
         WithAndWithout out;
-        double mse = 0, max_error = 0;
-        const auto n = static_cast<double>(poses_.size());
-        for (std::size_t p = 0; p < poses_.size(); ++p) {
+        DifferenceSum difference;
+        for (const Pose& pose : poses_) {
             if (progress_.stopped())
                 return Error{request_.model_file, "The report was stopped by the user", "", ErrorKind::stopped};
-            const std::vector<gl::DrawItem> items = engine.full_detail(poses_[p]);
+            const std::vector<gl::DrawItem> items = engine.full_detail(pose);
             const bool has = std::any_of(items.begin(), items.end(), [&](const gl::DrawItem& item) {
                 return (engine.model().reps[item.rep].effects & off) != 0;
             });
-            if (has && shown_at != nullptr) ++*shown_at;
-            auto pictures = draw(engine, poses_[p], items, out);
+            if (has) ++shown_at;
+            auto pictures = draw(engine, pose, items, out);
             if (!pictures) return pictures.error();
-            const auto& [with, bare] = *pictures;
-            const double error = measure::snr(bare.rgba, with.rgba).mse;
-            mse += error / n;
-            if (error > 0) out.flip += measure::flip(bare.rgba, with.rgba, with.width, with.height) / n;
-            if (!(error > max_error)) continue;
-            max_error = error;
-            out.max_at = static_cast<std::uint32_t>(p);
-            out.with = report::jpeg_data_uri(with.rgba, with.width, with.height, picture_quality);
-            out.without = report::jpeg_data_uri(bare.rgba, bare.width, bare.height, picture_quality);
+            difference.add(pictures->first, pictures->second);
         }
-        out.psnr_db = report::psnr_db(mse);
-        return out;
+        return WithAndWithout{difference.found(), out.with_ms, out.without_ms};
     }
 
     /// Timed in turns, so that a busy moment of the machine strikes both; then a picture of each.
@@ -107,6 +89,48 @@ private:
     const Progress& progress_;
 };
 
+/// What the bake found, and what the path has of it.
+EffectWorth found_effect(const effects::EffectModule& module, std::size_t bit, const model::Model& model,
+                         const UseOfEffects& use) {
+    EffectWorth effect;
+    effect.name = module.name;
+    effect.help = module.help;
+    effect.requested_by = module.requested_by;
+    for (const model::EffectFinding& f : model.effects) {
+        if (f.bit != module.bit) continue;
+        effect.called_for = f.called_for;
+        effect.reason = f.reason;
+        effect.triangles = f.triangles;
+    }
+    effect.frames_share = use.full.share_of_frames(bit);
+    effect.triangles_share = use.full.share_of_triangles(bit);
+    effect.walked_frames_share = use.walked.share_of_frames(bit);
+    effect.walked_triangles_share = use.walked.share_of_triangles(bit);
+    effect.where = holders_of(model, bit);
+    return effect;
+}
+
+/// How often effects are in use, and the three ways: all that one engine as called for can measure.
+Result<UseOfEffects> measure_whole(const PlacesRequest& request, const Path& path, const std::vector<Pose>& poses,
+                                   const Progress& progress, EffectReport& report) {
+    auto opened = open_as_called_for(request);
+    if (!opened) return opened.error();
+    report.machine = opened->machine;
+    report.uncalibrated = opened->uncalibrated;
+    Engine& engine = *opened->engine;
+    engine.device().bind();
+    report.renderer = engine.device().renderer();
+    report.use_frames = std::max(min_use_poses, request.poses);
+    const UseOfEffects use = measure_use(engine, poses_along(path, report.use_frames), progress);
+    engine.device().release();
+    progress.update("all on", 0.1);
+    auto ways = measure_ways(engine, request, poses, progress);
+    if (!ways) return ways.error();
+    report.ways = std::move(*ways);
+    report.bare = {report.ways.bare.difference, report.ways.as_called_for.ms, report.ways.bare.ms};
+    return use;
+}
+
 }  // namespace
 
 Result<EffectReport> measure_effects(const PlacesRequest& request, const Progress& progress) {
@@ -120,34 +144,25 @@ Result<EffectReport> measure_effects(const PlacesRequest& request, const Progres
     report.width = request.width;
     report.height = request.height;
     report.poses = request.poses;
-    model::EffectMask all = 0;
-    for (const model::Material& material : model->materials) all |= material.effects;
     const std::vector<Pose> poses = poses_along(chosen->path, request.poses);
+    progress.update("frames in use", 0);
+    auto use = measure_whole(request, chosen->path, poses, progress, report);
+    if (!use) return use.error();
     Comparing comparing(request, poses, progress);
+    const model::EffectMask all = effects_of_materials(*model);
     const auto modules = effects::all_effects();
     for (std::size_t e = 0; e < modules.size(); ++e) {
-        EffectWorth effect;
-        effect.name = modules[e].name;
-        effect.help = modules[e].help;
-        effect.requested_by = modules[e].requested_by;
-        for (const model::EffectFinding& f : model->effects) {
-            if (f.bit != modules[e].bit) continue;
-            effect.called_for = f.called_for;
-            effect.reason = f.reason;
-            effect.triangles = f.triangles;
-        }
-        progress.update(effect.name, static_cast<double>(e) / static_cast<double>(modules.size() + 1));
+        EffectWorth effect =
+            found_effect(modules[e], static_cast<std::size_t>(std::countr_zero(modules[e].bit + 0U)), *model, *use);
+        const auto done = static_cast<double>(e + 1), steps = static_cast<double>(modules.size() + 1);
+        progress.update(effect.name, done / steps);
         if ((all & modules[e].bit) != 0) {
-            auto worth = comparing.without(modules[e].bit, report, &effect.shown_at);
+            auto worth = comparing.without(modules[e].bit, effect.shown_at);
             if (!worth) return worth.error();
             if (effect.shown_at > 0) effect.worth = std::move(*worth);
         }
         report.effects.push_back(std::move(effect));
     }
-    progress.update("bare", static_cast<double>(modules.size()) / static_cast<double>(modules.size() + 1));
-    auto bare = comparing.without(all, report, nullptr);
-    if (!bare) return bare.error();
-    report.bare = std::move(*bare);
     return report;
 }
 

@@ -7,17 +7,16 @@
 
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
+#include "tools/accuracy/effect_use.hpp"
+#include "tools/accuracy/effect_ways.hpp"
+#include "tools/accuracy/picture_difference.hpp"
 #include "tools/accuracy/places.hpp"
 
 namespace surefoot::accuracy {
 
 /// Full detail with something, and without it: means over the places of the medians of the repeats.
-struct WithAndWithout {
+struct WithAndWithout : PictureDifference {
     double with_ms = 0, without_ms = 0;
-    double psnr_db = 0;         ///< of the pictures without, over all places; report::max_psnr_db: they are equal
-    double flip = 0;            ///< mean
-    std::string with, without;  ///< pictures of the place where they differ most, as data URIs; empty: they are equal
-    std::uint32_t max_at = 0;   ///< number of that place
 };
 
 /// One effect of the model.
@@ -27,6 +26,10 @@ struct EffectWorth {
     std::uint64_t triangles = 0;
     std::uint32_t shown_at = 0;  ///< places whose full detail uses it
     WithAndWithout worth;        ///< only if it is shown somewhere
+    /// Shares of the frames along the path in which it is in use, and of their triangles; 0..1.
+    double frames_share = 0, triangles_share = 0;                ///< in full detail
+    double walked_frames_share = 0, walked_triangles_share = 0;  ///< as a walk at walked_rate_hz selects
+    std::vector<Holder> where;                                   ///< of its triangles in full detail; empty: there are none
 };
 
 /// All that the page shows.
@@ -34,7 +37,9 @@ struct EffectReport {
     std::string model, path, renderer, machine, uncalibrated;
     std::uint32_t width = 0, height = 0, poses = 0;
     std::vector<EffectWorth> effects;  ///< all, in the order of application
-    WithAndWithout bare;               ///< without any
+    std::uint32_t use_frames = 0;      ///< of the shares of frames
+    ThreeWays ways;
+    WithAndWithout bare;  ///< without any: ways.bare beside ways.as_called_for
 };
 
 /// Draws on the calling thread; opens an engine an effect. Errors: of the model, its path and the backend; stopped by the user.

@@ -19,6 +19,32 @@ struct EffectsArguments {
     bool json = false;
 };
 
+void print_tables(const accuracy::EffectReport& report) {
+    const report::Columns columns(
+        {{"without", 14}, {"places", -7}, {"frames", -8}, {"with ms", -9}, {"without ms", -11}, {"PSNR dB", -8}, {"FLIP", -7}});
+    fmt::print("{}\n", columns.heading());
+    const auto decibels = [](const accuracy::PictureDifference& d) {
+        return d.psnr_db < report::max_psnr_db ? fmt::format("{:.1f}", d.psnr_db) : std::string("equal");
+    };
+    const auto row = [&](const std::string& name, std::uint32_t places, double frames, const accuracy::WithAndWithout& w) {
+        fmt::print("{}\n", columns.row({name, std::to_string(places), fmt::format("{:.1f} %", 100 * frames),
+                                        fmt::format("{:.2f}", w.with_ms), fmt::format("{:.2f}", w.without_ms), decibels(w),
+                                        fmt::format("{:.4f}", w.flip)}));
+    };
+    for (const accuracy::EffectWorth& e : report.effects)
+        if (e.shown_at > 0) row(e.name, e.shown_at, e.frames_share, e.worth);
+    row("all: bare", report.poses, 1, report.bare);
+    const report::Columns ways({{"drawn", 14}, {"ms", -7}, {"PSNR dB", -8}, {"programs", -9}, {"batches", -9}, {"changes", -9}});
+    fmt::print("\n{}\n", ways.heading());
+    const auto way = [&](const std::string& name, const accuracy::Way& w, const std::string& psnr) {
+        fmt::print("{}\n", ways.row({name, fmt::format("{:.2f}", w.ms), psnr, std::to_string(w.programs),
+                                     fmt::format("{:.0f}", w.batches), fmt::format("{:.0f}", w.state_changes)}));
+    };
+    way("all on", report.ways.all_on, decibels(report.ways.all_on.difference));
+    way("as called for", report.ways.as_called_for, "");
+    way("bare", report.ways.bare, decibels(report.ways.bare.difference));
+}
+
 int run_report(EffectsArguments& a, const Context& context) {
     const auto read = read_settings(*a.settings);
     if (!read) return misuse(read.error());
@@ -36,17 +62,7 @@ int run_report(EffectsArguments& a, const Context& context) {
         fmt::print("{}", accuracy::effects_json(*report));
         return exit_success;
     }
-    const report::Columns columns(
-        {{"without", 14}, {"places", -7}, {"with ms", -9}, {"without ms", -11}, {"PSNR dB", -8}, {"FLIP", -7}});
-    fmt::print("{}\n", columns.heading());
-    const auto row = [&](const std::string& name, const std::string& places, const accuracy::WithAndWithout& w) {
-        fmt::print("{}\n", columns.row({name, places, fmt::format("{:.2f}", w.with_ms), fmt::format("{:.2f}", w.without_ms),
-                                        w.psnr_db < report::max_psnr_db ? fmt::format("{:.1f}", w.psnr_db) : "equal",
-                                        fmt::format("{:.4f}", w.flip)}));
-    };
-    for (const accuracy::EffectWorth& e : report->effects)
-        if (e.shown_at > 0) row(e.name, std::to_string(e.shown_at), e.worth);
-    row("all: bare", std::to_string(report->poses), report->bare);
+    print_tables(*report);
     fmt::print("page: {}/index.html\n", a.report);
     return exit_success;
 }
@@ -84,9 +100,10 @@ void add_effects(CLI::App& app, Context& context) {
                               "surefoot effects town.walk\n  surefoot effects town.walk --report effects", a->json);
     accuracy::PlacesRequest& r = a->request;
     c->add_option("model", r.model_file, "The .walk model")->required();
-    CLI::Option* report = c->add_option("--report", a->report,
-                                        "Folder for a page: full detail with and without each effect, its time and its pictures")
-                              ->check(names_something());
+    CLI::Option* report =
+        c->add_option("--report", a->report,
+                      "Folder for a page: where and how often each effect is in use, what it costs and shows; all on, and bare")
+            ->check(names_something());
     c->add_option("--path", r.path_file, "CSV file of the path along which places are taken (else MODEL.path.csv, else a tour)")
         ->needs(report);
     c->add_option("--poses", r.poses, "Number of places along the path, 1 to 256")

@@ -1,0 +1,93 @@
+// Effects counted over poses of a path, without drawing.
+#include "tools/accuracy/effect_use.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "tools/walk/frame_share.hpp"
+
+namespace surefoot::accuracy {
+
+namespace {
+
+double share(std::uint64_t part, std::uint64_t all) { return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0; }
+
+/// The object that a leaf belongs to; the leaf itself, if there is none.
+model::Index object_of(const model::Model& m, model::Index leaf) {
+    for (model::Index n = leaf; n != model::none; n = m.nodes[n].parent)
+        if (m.nodes[n].kind == model::NodeKind::object) return n;
+    return leaf;
+}
+
+/// Leaves of one name. Pieces of a divided object have no node in common: their object's index tells them apart.
+struct Named {
+    std::uint64_t triangles = 0;
+    std::vector<model::Index> objects;
+};
+
+}  // namespace
+
+void FramesInUse::add(const model::Model& m, std::span<const TrianglesByEffect> of_reps, std::span<const model::Index> reps) {
+    ++frames;
+    TrianglesByEffect here{};
+    for (const model::Index rep : reps) {
+        triangles += m.reps[rep].triangles;
+        for (std::size_t e = 0; e < here.size(); ++e) here[e] += of_reps[rep][e];
+    }
+    for (std::size_t e = 0; e < here.size(); ++e) {
+        triangles_with[e] += here[e];
+        if (here[e] > 0) ++frames_with[e];
+    }
+}
+
+double FramesInUse::share_of_frames(std::size_t effect) const { return share(frames_with[effect], frames); }
+double FramesInUse::share_of_triangles(std::size_t effect) const { return share(triangles_with[effect], triangles); }
+
+std::vector<Holder> holders_of(const model::Model& m, std::size_t effect) {
+    const std::vector<TrianglesByEffect> of_reps = triangles_of_reps(m);
+    std::map<std::string, Named> by_name;
+    std::uint64_t all = 0;
+    for (model::Index n = 0; n < m.nodes.size(); ++n) {
+        const model::Node& leaf = m.nodes[n];
+        if (leaf.child_count > 0) continue;
+        const std::uint64_t triangles = of_reps[leaf.first_rep + leaf.rep_count - 1][effect];
+        if (triangles == 0) continue;
+        all += triangles;
+        Named& named = by_name[m.name_of(m.nodes[object_of(m, n)])];
+        named.triangles += triangles;
+        named.objects.push_back(leaf.object);
+    }
+    std::vector<Holder> out;
+    for (auto& [name, named] : by_name) {
+        std::sort(named.objects.begin(), named.objects.end());
+        const auto end = std::unique(named.objects.begin(), named.objects.end());
+        out.push_back({name, static_cast<std::uint32_t>(end - named.objects.begin()), share(named.triangles, all)});
+    }
+    std::stable_sort(out.begin(), out.end(), [](const Holder& a, const Holder& b) { return a.share > b.share; });
+    out.resize(std::min(out.size(), max_holders));
+    return out;
+}
+
+UseOfEffects measure_use(Engine& engine, std::span<const Pose> poses, const Progress& progress) {
+    UseOfEffects use;
+    const model::Model& m = engine.model();
+    const std::vector<TrianglesByEffect> of_reps = triangles_of_reps(m);
+    constexpr double budget_us = walk::frame_share * 1e6 / walked_rate_hz;
+    prepare::PreparedFrame prepared;
+    engine.reserve(prepared);
+    std::vector<model::Index> reps;
+    const auto count = [&](FramesInUse& frames, const auto& items) {
+        reps.clear();
+        for (const auto& item : items) reps.push_back(item.rep);
+        frames.add(m, of_reps, reps);
+    };
+    for (const Pose& pose : poses) {
+        if (progress.stopped()) break;
+        count(use.full, engine.full_detail(pose));
+        engine.prepare({pose, 0.0, 0.0}, 0, 0.0, 0.0, prepared);
+        count(use.walked, engine.select(prepared, budget_us, {}, 0.0).items);
+    }
+    return use;
+}
+
+}  // namespace surefoot::accuracy
