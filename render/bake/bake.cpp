@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <thread>
 
@@ -16,9 +17,9 @@
 #include "render/bake/ground.hpp"
 #include "render/bake/limits.hpp"
 #include "render/bake/materials.hpp"
-#include "render/bake/openness.hpp"
 #include "render/bake/picture_loss.hpp"
 #include "render/bake/proxies.hpp"
+#include "render/bake/scene_light.hpp"
 #include "render/bake/stage.hpp"
 #include "render/bake/tour.hpp"
 #include "render/bake/trim_masks.hpp"
@@ -55,7 +56,9 @@ struct BakeContext {
     std::vector<std::vector<std::uint32_t>> members;  ///< by cluster: the objects below it
     std::vector<std::uint32_t> entities;              ///< by node: the object, or after these the cluster
     std::vector<bool> cut_out;                        ///< by material
-    Openness openness;
+    std::unique_ptr<LightRays> rays;                  ///< none: light is not measured
+    RefinedMeshes refined;
+    SceneLight light;
 
     ProxyInput proxy_input() const;
     void place_objects();
@@ -70,6 +73,7 @@ struct BakeContext {
     void bound(const ProxyInput& input, model::Index n, BoxForm& box) const;
     std::optional<PlacedBoxes> add_boxes();
     void measure_areas();
+    void prepare_light();
     bool measure_light();
     bool measure_pictures();
     void find_effects();
@@ -170,7 +174,7 @@ bool BakeContext::make_forms() {
     std::vector<std::vector<std::string>> notes(scene.meshes.size());
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
-        Geometry geometry = mesh_geometry(scene.meshes[m], model);
+        Geometry geometry = mesh_geometry(m < refined.size() && refined[m] ? *refined[m] : scene.meshes[m], model);
         const std::vector<ArtistStandIn> stand_ins =
             stand_ins_of(scene, static_cast<importer::Index>(m), model, geometry, notes[m]);
         const CutLimits limits =
@@ -181,6 +185,7 @@ bool BakeContext::make_forms() {
     });
     for (const auto& of_mesh : notes)
         model.provenance.warnings.insert(model.provenance.warnings.end(), of_mesh.begin(), of_mesh.end());
+    refined.clear();
     if (go) adopt_forms(std::move(by_mesh));
     return go;
 }
@@ -398,7 +403,7 @@ void BakeContext::find_effects() {
     }
     std::vector<bool> used(model.materials.size(), false);
     for (const model::Part& part : model.parts) used[part.material] = true;
-    for (const auto& [copy, original] : openness.copies) {  // what only copies are drawn with is found without the sun
+    for (const auto& [copy, original] : light.openness.copies) {  // what only copies are drawn with is found without the sun
         if (!used[copy] || used[original]) continue;
         used[original] = true;
         model.materials[original].effects = model.materials[copy].effects;
@@ -406,21 +411,23 @@ void BakeContext::find_effects() {
     for (std::size_t m = 0; m < used.size(); ++m) {  // what nothing is drawn with calls for nothing
         if (!used[m]) model.materials[m].effects = 0;
     }
-    model.effects = bake::find_effects(model, material_triangles, openness);
+    model.effects = bake::find_effects(model, material_triangles, light);
     add_sun_reason(scene, options.sun, model.effects);
 }
 
-/// Before boxes are captured, since their pictures hold light.
+/// Only lit scenes: rays for what light is measured from, and meshes that are cut for it.
+void BakeContext::prepare_light() {
+    const auto lit = [](const model::Material& m) { return (m.effects & model::effect_sun) != 0; };
+    if (options.quality != Quality::full || std::none_of(model.materials.begin(), model.materials.end(), lit)) return;
+    rays = make_light_rays(scene, progress);
+    if (!progress.stopped()) refined = refine_scene(scene, model, *rays, progress);
+}
+
 bool BakeContext::measure_light() {
-    if (options.quality != Quality::full) return true;
-    const model::Ground ground = make_opaque_ground(scene, progress);
-    if (progress.stopped()) return false;
-    const RayTree opaque(ground);
-    Stage stage(progress, "light", openness_steps(model));
-    openness = measure_openness(
-        model, opaque, [](std::size_t count, const std::function<void(std::size_t)>& body) { for_all(count, body); },
-        [&] { return stage.step(); });
-    return !progress.stopped();
+    if (!rays) return true;
+    auto found = measure_scene_light(scene, *rays, model, progress);
+    if (found) light = std::move(*found);
+    return found.has_value();
 }
 
 bool BakeContext::measure_pictures() {
@@ -435,12 +442,16 @@ bool BakeContext::measure_pictures() {
 }  // namespace
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
-    BakeContext context{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}, {}, {}};
+    BakeContext context{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     context.cut_out = cut_out_materials(scene);
     context.proxy = add_materials(scene, context.model);
     mark_vertex_colours(scene, context.model);
     if (scene.sun) context.model.sun_direction = scene.sun->towards;
     if (options.sun) context.model.sun_direction = model::towards_sun(*options.sun);
+    if (options.sun) context.model.light = {options.sun->day, options.sun->latitude_deg};
+    context.model.light.fog_visibility_m = static_cast<float>(options.fog_visibility_m.value_or(scene.fog_visibility_m));
+    if (context.model.light.fog_visibility_m > 0)
+        for (model::Material& material : context.model.materials) material.effects |= model::effect_fog;
     bool coloured = false;
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         coloured |= (context.model.materials[m].effects & (model::effect_texture | model::effect_vertex_colour)) != 0;
@@ -451,7 +462,8 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         options.workers > 0 ? options.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     tbb::task_arena arena(workers);
     arena.execute([&] {
-        done = context.make_forms();
+        context.prepare_light();
+        done = !progress.stopped() && context.make_forms();
         if (done && !context.objects.empty()) done = context.make_clusters() && context.trim_masks();
     });
     if (!done) return stopped_by_user(scene);
@@ -476,6 +488,7 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         if (!done) return;
         boxes->drop_idle(costs_of(options));
         context.measure_areas();
+        fill_scene_light(context.model);
         context.find_effects();
         context.model.ground = make_ground(scene, progress);
         Tour tour = make_tour(context.model.ground, context.model.nodes[0].box, progress);

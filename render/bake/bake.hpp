@@ -24,6 +24,7 @@ struct BakeOptions {
     int workers = 0;                    ///< 0: all cores
     double frame_us = 33333;            ///< the frame of the 1/16 rule, at 30 Hz
     std::optional<model::SunTime> sun;  ///< the caller sees that it is above the horizon; none: the scene's, else a fixed one
+    std::optional<double> fog_visibility_m;        ///< in metres, 0: no fog; none: the scene's
     const model::CostModel* costs = nullptr;       ///< calibrated; null: default_costs()
     model::Counts max_counts = model::max_counts;  ///< limits of the model; tests lower them
 };

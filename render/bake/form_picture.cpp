@@ -111,7 +111,9 @@ struct Painter {
         vec3 by_light(1.0F);
         if ((material.effects & model::effect_sun) != 0) {
             const vec3 sky = glm::mix(vec3(0.34F, 0.32F, 0.30F), vec3(0.52F, 0.56F, 0.62F), 0.5F * n.y + 0.5F);
-            const float sun = std::max(glm::dot(n, vec3(model.sun_direction)), 0.0F);
+            float sun = std::max(glm::dot(n, vec3(model.sun_direction)), 0.0F);
+            if ((material.effects & model::effect_shadow) != 0)
+                sun *= static_cast<float>(model.sun_seen[static_cast<std::size_t>(&v - model.vertices.data())].share[0]) / 255.0F;
             by_light = sky + vec3(0.56F, 0.53F, 0.47F) * sun;
         }
         if ((material.effects & model::effect_openness) != 0) {

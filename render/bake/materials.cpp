@@ -303,10 +303,23 @@ void add_openness(const Openness& openness, std::vector<model::EffectFinding>& f
     }
 }
 
+/// What was measured of shadows and lamps, and how far the fog lets see.
+void add_baked_light(const model::Model& model, const BakedLight& baked, std::vector<model::EffectFinding>& findings) {
+    for (model::EffectFinding& f : findings) {
+        if (!f.called_for) continue;
+        if (f.bit == model::effect_shadow)
+            f.reason += fmt::format("; {} of {} vertices in the sun lie in shadow at some hour", baked.in_shadow, baked.vertices);
+        else if (f.bit == model::effect_lamps)
+            f.reason += fmt::format("; {} vertices are lit or glow", baked.lit);
+        else if (f.bit == model::effect_fog)
+            f.reason += fmt::format("; one sees {:.4g} m far", model.light.fog_visibility_m);
+    }
+}
+
 }  // namespace
 
 std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
-                                               const Openness& openness) {
+                                               const SceneLight& light) {
     constexpr std::array<const char*, model::effect_count> absent = {
         "no material has an image",
         "all vertex colours are white or absent",
@@ -339,7 +352,8 @@ std::vector<model::EffectFinding> find_effects(const model::Model& model, const 
                                  : absent[e];
         findings.push_back(std::move(f));
     }
-    add_openness(openness, findings);
+    add_openness(light.openness, findings);
+    add_baked_light(model, light.baked, findings);
     return findings;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "render/bake/geometry.hpp"
-#include "render/bake/openness.hpp"
+#include "render/bake/scene_light.hpp"
 #include "render/import/scene.hpp"
 #include "render/model/model.hpp"
 #include "render/model/sun_time.hpp"
@@ -37,7 +37,7 @@ std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model:
 
 /// One finding an effect, with its reason. triangles_of_material: full detail.
 std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
-                                               const Openness& openness = {});
+                                               const SceneLight& light = {});
 /// Adds to the sun's finding why it stands where it does, if it is called for.
 void add_sun_reason(const importer::Scene& scene, const std::optional<model::SunTime>& time,
                     std::vector<model::EffectFinding>& findings);

@@ -7,19 +7,19 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <vector>
+
+#include "render/bake/lit_vertices.hpp"
 
 namespace surefoot::bake {
 
 namespace {
 
 constexpr std::size_t rays = 24;
-constexpr double room_m = 3;      // what is nearer shades
-constexpr double lift_m = 0.02;   // off the surface that a vertex is on
-constexpr double inset_m = 0.05;  // from its border inwards, so that a corner does not start within its neighbour
-constexpr double min_up = 0.1;    // rays to the sky rise: what lies below the horizon is ground
-constexpr std::size_t max_places = 4;
-constexpr std::uint32_t task_vertices = 512;
+constexpr double room_m = 3;                // what is nearer shades
+constexpr std::uint8_t within_share = 230;  // of a room that is hidden: the mean ray is 0.3 m long
+constexpr double min_up = 0.1;              // rays to the sky rise: what lies below the horizon is ground
 
 /// Spread evenly over a hemisphere about +Z, by the cosine.
 std::array<dvec3, rays> cosine_directions() {
@@ -38,66 +38,6 @@ struct Seen {
     double sky = 0, room = 0;
 };
 
-/// Chains share their vertices: one array of the model, the parts over it, and where it stands.
-struct VertexRange {
-    std::uint32_t first = 0, count = 0;
-    std::vector<model::Index> parts;       ///< lit ones
-    std::vector<model::Index> placements;  ///< at most max_places
-    bool two_sided = false, all_places = true;
-};
-
-/// Where rays of a vertex begin, and which way its front looks. In the range's own frame.
-struct Start {
-    vec3 at{0.0F}, inwards{0.0F}, normal{0.0F};
-    bool used = false;
-};
-
-std::vector<VertexRange> ranges_of(const model::Model& model) {
-    std::map<std::uint32_t, VertexRange> by_first;
-    for (const model::Representation& rep : model.reps) {
-        for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
-            const model::Part& part = model.parts[p];
-            const model::Material& material = model.materials[part.material];
-            if ((material.effects & model::effect_sun) == 0) continue;
-            VertexRange& range = by_first[part.first_vertex];
-            range.first = part.first_vertex;
-            range.count = std::max(range.count, part.vertex_count);
-            range.two_sided = range.two_sided || material.two_sided;
-            if (range.parts.empty() || range.parts.back() != p) range.parts.push_back(p);
-            if (range.placements.empty() || range.placements.back() != rep.placement) range.placements.push_back(rep.placement);
-        }
-    }
-    std::vector<VertexRange> ranges;
-    for (auto& [first, range] : by_first) {
-        for (std::vector<model::Index>* list : {&range.parts, &range.placements}) {
-            std::sort(list->begin(), list->end());
-            list->erase(std::unique(list->begin(), list->end()), list->end());
-        }
-        const std::size_t count = range.placements.size();
-        if (count > max_places) {
-            std::vector<model::Index> spread;
-            for (std::size_t i = 0; i < max_places; ++i) spread.push_back(range.placements[i * (count - 1) / (max_places - 1)]);
-            range.placements = std::move(spread);
-            range.all_places = false;
-        }
-        ranges.push_back(std::move(range));
-    }
-    return ranges;
-}
-
-/// Some vertices of a range.
-struct Task {
-    std::uint32_t range, from, to;
-};
-
-std::vector<Task> tasks_of(const std::vector<VertexRange>& ranges) {
-    std::vector<Task> tasks;
-    for (std::uint32_t r = 0; r < ranges.size(); ++r)
-        for (std::uint32_t from = 0; from < ranges[r].count; from += task_vertices)
-            tasks.push_back({r, from, std::min(ranges[r].count, from + task_vertices)});
-    return tasks;
-}
-
 class OpennessMaker {
 public:
     OpennessMaker(model::Model& model, const RayTree& opaque, std::vector<VertexRange> ranges)
@@ -108,10 +48,11 @@ public:
           directions_(cosine_directions()),
           far_m_(model.nodes.empty() ? 0 : 2 * model.nodes[0].box.diagonal()) {}
 
-    /// Of all vertices of a range: off each a little towards the middle of its triangles.
-    void find_starts(std::size_t r);
+    void find_starts(std::size_t r) { starts_[r] = ray_starts(model_, ranges_[r]); }
     /// After find_starts() of its range.
-    void measure(const Task& task);
+    void measure(const VertexTask& task);
+    /// Vertices that lie within something take the mean of those next to them. Says which, by vertex of the model.
+    [[nodiscard]] std::vector<std::uint8_t> fill_unknown();
     /// Counts vertices, and says whether anything is hidden.
     [[nodiscard]] bool count_vertices(Openness& found) const;
     /// Gives lit materials the effect, and closed parts one without the sun.
@@ -121,7 +62,6 @@ private:
     static std::uint8_t hidden_byte(double seen) {
         return static_cast<std::uint8_t>(std::lround(255 * std::clamp(1 - seen, 0.0, 1.0)));
     }
-    static dmat3 cofactor(const dmat3& m) { return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])}; }
     [[nodiscard]] bool is_closed(const model::Part& part) const;
     [[nodiscard]] std::vector<bool> closed_parts() const;
     void add_seen(const dvec3& at, const dvec3& normal, Seen& seen) const;
@@ -129,55 +69,23 @@ private:
     model::Model& model_;
     const RayTree& opaque_;
     std::vector<VertexRange> ranges_;
-    std::vector<std::vector<Start>> starts_;
+    std::vector<std::vector<RayStart>> starts_;
     std::array<dvec3, rays> directions_;
     double far_m_;
 };
 
-void OpennessMaker::find_starts(std::size_t r) {
-    const VertexRange& range = ranges_[r];
-    std::vector<Start>& starts = starts_[r];
-    starts.resize(range.count);
-    std::vector<std::uint32_t> triangles(range.count, 0);
-    for (std::uint32_t v = 0; v < range.count; ++v) {
-        const model::Vertex& vertex = model_.vertices[range.first + v];
-        starts[v].at = {vertex.position[0], vertex.position[1], vertex.position[2]};
-        starts[v].normal = {vertex.normal[0], vertex.normal[1], vertex.normal[2]};
-    }
-    for (const model::Index p : range.parts) {
-        const model::Part& part = model_.parts[p];
-        for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) {
-            const std::uint32_t* corner = &model_.indices[part.first_index + i];
-            const vec3 middle = (starts[corner[0]].at + starts[corner[1]].at + starts[corner[2]].at) / 3.0F;
-            for (int k = 0; k < 3; ++k) {
-                starts[corner[k]].used = true;
-                starts[corner[k]].inwards += middle - starts[corner[k]].at;
-                ++triangles[corner[k]];
-            }
-        }
-    }
-    for (std::uint32_t v = 0; v < range.count; ++v)
-        if (starts[v].used) starts[v].inwards *= 0.1F / static_cast<float>(triangles[v]);
-}
-
-void OpennessMaker::measure(const Task& task) {
+void OpennessMaker::measure(const VertexTask& task) {
     const VertexRange& range = ranges_[task.range];
     for (std::uint32_t v = task.from; v < task.to; ++v) {
-        const Start& start = starts_[task.range][v];
+        const RayStart& start = starts_[task.range][v];
         if (!start.used) continue;
         Seen front, back;
         double places = 0;
         for (const model::Index p : range.placements) {
-            const model::Placement& place = model_.placements[p];
-            const dmat3 linear(place.linear);
-            const dvec3 turned = (glm::determinant(linear) < 0 ? -1.0 : 1.0) * (cofactor(linear) * dvec3(start.normal));
-            const double length = glm::length(turned);
-            if (!(length > 0)) continue;  // faces that cancel each other: nothing is known, and nothing is hidden
-            const dvec3 inwards = linear * dvec3(start.inwards);
-            const double by = glm::length(inwards);
-            const dvec3 at = place.origin + linear * dvec3(start.at) + (by > inset_m ? inset_m / by : 1.0) * inwards;
-            add_seen(at, turned / length, front);
-            if (range.two_sided) add_seen(at, -turned / length, back);
+            const std::optional<PlacedStart> placed = placed_start(start, model_.placements[p]);
+            if (!placed) continue;  // nothing is known, and nothing is hidden
+            add_seen(placed->at, placed->normal, front);
+            if (range.two_sided) add_seen(placed->at, -placed->normal, back);
             ++places;
         }
         if (!(places > 0)) continue;
@@ -193,7 +101,7 @@ void OpennessMaker::measure(const Task& task) {
 void OpennessMaker::add_seen(const dvec3& at, const dvec3& normal, Seen& seen) const {
     const dvec3 other = std::abs(normal.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
     const dvec3 x = glm::normalize(glm::cross(other, normal)), y = glm::cross(normal, x);
-    const dvec3 from = at + lift_m * normal;
+    const dvec3 from = at + ray_lift_m * normal;
     for (const dvec3& d : directions_) {
         const dvec3 way = d.x * x + d.y * y + d.z * normal;
         const double near_m = opaque_.nearest_hit_m({from, way, room_m});
@@ -203,6 +111,28 @@ void OpennessMaker::add_seen(const dvec3& at, const dvec3& normal, Seen& seen) c
         const dvec3 up = rises ? way : glm::normalize(dvec3(way.x, min_up, way.z));
         if (!opaque_.is_blocked({from, up, far_m_})) seen.sky += 1.0 / rays;
     }
+}
+
+std::vector<std::uint8_t> OpennessMaker::fill_unknown() {
+    std::vector<std::uint8_t> out(model_.vertices.size(), 0);
+    for (std::size_t r = 0; r < ranges_.size(); ++r) {
+        const VertexRange& range = ranges_[r];
+        for (std::size_t side = 0; side < 2; ++side) {
+            std::vector<bool> unknown(range.count, false);
+            for (std::uint32_t v = 0; v < range.count; ++v)
+                unknown[v] = starts_[r][v].used && model_.vertices[range.first + v].hidden[2 + side] >= within_share;
+            for (const VertexFill& fill : vertex_fills(model_, range, unknown)) {
+                model::Vertex& to = model_.vertices[range.first + fill.vertex];
+                out[range.first + fill.vertex] |= static_cast<std::uint8_t>(1U << side);
+                for (const std::size_t what : {side, 2 + side}) {
+                    std::size_t sum = 0;
+                    for (const std::uint32_t from : fill.from) sum += model_.vertices[range.first + from].hidden[what];
+                    to.hidden[what] = static_cast<std::uint8_t>((sum + fill.from.size() / 2) / fill.from.size());
+                }
+            }
+        }
+    }
+    return out;
 }
 
 bool OpennessMaker::count_vertices(Openness& found) const {
@@ -275,12 +205,12 @@ void OpennessMaker::change_materials(Openness& found) {
 
 }  // namespace
 
-std::size_t openness_steps(const model::Model& model) { return tasks_of(ranges_of(model)).size(); }
+std::size_t openness_steps(const model::Model& model) { return vertex_tasks(lit_ranges(model, model::effect_sun)).size(); }
 
 Openness measure_openness(model::Model& model, const RayTree& opaque, const ForAll& for_all, const std::function<bool()>& step) {
     Openness found;
-    std::vector<VertexRange> ranges = ranges_of(model);
-    const std::vector<Task> tasks = tasks_of(ranges);
+    std::vector<VertexRange> ranges = lit_ranges(model, model::effect_sun);
+    const std::vector<VertexTask> tasks = vertex_tasks(ranges);
     const std::size_t count = ranges.size();
     OpennessMaker maker(model, opaque, std::move(ranges));
     for_all(count, [&](std::size_t r) { maker.find_starts(r); });
@@ -290,7 +220,9 @@ Openness measure_openness(model::Model& model, const RayTree& opaque, const ForA
         maker.measure(tasks[t]);
         if (!step()) go = false;
     });
-    if (!go || !maker.count_vertices(found)) return found;
+    if (!go) return found;
+    found.within = maker.fill_unknown();
+    if (!maker.count_vertices(found)) return found;
     found.measured = true;
     maker.change_materials(found);
     return found;

@@ -18,6 +18,8 @@ struct Openness {
     std::uint64_t vertices = 0;   ///< that lit triangles use
     std::uint64_t triangles = 0;  ///< lit ones of the leaves' full detail, as often as they are placed
     std::uint64_t closed = 0;     ///< of these, in parts that see no sky at all: drawn without the sun
+    /// By vertex: bit 0, its front lies within something, so it holds the mean of its neighbours; bit 1, its back.
+    std::vector<std::uint8_t> within;
     /// Materials without the sun that were added, and what each is a copy of.
     std::vector<std::pair<model::Index, model::Index>> copies;
 };

@@ -105,6 +105,7 @@ struct Scene {
     std::vector<image::Image> images;
     std::vector<StandIn> stand_ins;
     std::optional<Sun> sun;   ///< the brightest one
+    double fog_visibility_m = 0;  ///< extras.fog_visibility_m of the glTF scene; 0: no fog
     std::vector<Lamp> lamps;  ///< the brightest max_lamps, in the file's order
     std::vector<std::string> sources;
     std::vector<std::string> warnings;              ///< repaired or dropped data, one line each with counts

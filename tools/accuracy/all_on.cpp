@@ -49,6 +49,9 @@ model::EffectMask addable(const model::Material& material, const Held& held, mod
     if (held.white) mask |= model::effect_vertex_colour;
     if ((material.effects & model::effect_openness) != 0 && held.no_sky) mask |= model::effect_sun;
     if ((material.effects & model::effect_sun) != 0 && held.open) mask |= model::effect_openness;
+    const model::EffectMask own = material.effects | (mask & all);
+    if ((own & model::effect_sun) != 0) mask |= model::effect_shadow;  // without it, its vertices see the sun all day
+    if ((own & (model::effect_sun | model::effect_openness)) != 0) mask |= model::effect_lamps;  // no lamp reaches its vertices
     return mask & all & ~material.effects;
 }
 
@@ -58,6 +61,8 @@ const char* why_not_everywhere(model::EffectMask bit) {
             return "a colour stands in vertices that do not show it";
         case model::effect_sun:
         case model::effect_openness:
+        case model::effect_shadow:
+        case model::effect_lamps:
             return "light would change materials without it";
         case model::effect_blend:
             return "what is blended is drawn last and hides nothing behind it";

@@ -23,7 +23,7 @@ struct Drawn {
 };
 
 double draw_ms(const Drawn& drawn, const Pose& pose, const std::vector<gl::DrawItem>& items) {
-    drawn.engine->show_switchable(drawn.effects);
+    drawn.engine->hide_effects(drawn.effects ? 0 : ~model::EffectMask{0});
     const std::int64_t begun = rt::monotonic_ns();
     drawn.engine->draw_unbudgeted(pose, items);
     return static_cast<double>(rt::monotonic_ns() - begun) * 1e-6;
@@ -49,7 +49,7 @@ Result<void> take_turn(std::span<Drawn> ways, const Pose& pose, const std::vecto
     }
     if (!first)
         for (Drawn& drawn : ways) drawn.ms.push_back(draw_ms(drawn, pose, items));
-    ways.front().engine->show_switchable(true);
+    ways.front().engine->hide_effects(0);
     device.release();
     return {};
 }
@@ -67,7 +67,7 @@ Result<PlacesEngine> open_as_called_for(const PlacesRequest& request) {
     auto model = model::read_walk(request.model_file, &file);
     if (!model) return model.error();
     EngineOptions options;
-    options.device.switchable = effects_of_materials(*model);
+    options.device.switches = {effects_of_materials(*model)};
     return open_engine_of_places(request, std::move(*model), file.hash, options);
 }
 

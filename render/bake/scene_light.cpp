@@ -1,0 +1,62 @@
+// One tree of what is opaque, and two rounds over the lit vertices.
+#include "render/bake/scene_light.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "render/bake/ground.hpp"
+#include "render/bake/stage.hpp"
+
+namespace surefoot::bake {
+
+namespace {
+
+const ForAll on_all_cores = [](std::size_t count, const std::function<void(std::size_t)>& body) { for_all(count, body); };
+
+/// By material of the model. Copies without the sun glow as what they are copies of.
+std::vector<vec3> emission_of(const importer::Scene& scene, const model::Model& model, const Openness& openness) {
+    std::vector<vec3> out(model.materials.size(), vec3(0));
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) out[m] = scene.materials[m].emission;
+    for (const auto& [copy, original] : openness.copies) out[copy] = out[original];
+    return out;
+}
+
+}  // namespace
+
+std::unique_ptr<LightRays> make_light_rays(const importer::Scene& scene, const Progress& progress) {
+    return std::make_unique<LightRays>(make_opaque_ground(scene, progress), scene);
+}
+
+RefinedMeshes refine_scene(const importer::Scene& scene, const model::Model& model, const LightRays& rays,
+                           const Progress& progress) {
+    Stage stage(progress, "cutting for light", 1);
+    const RefineLight light{glm::normalize(model.sun_direction), model.light, &rays.opaque, &rays.lamps};
+    RefinedMeshes refined = refine_for_light(scene, light, on_all_cores, [&] { return progress.stopped(); });
+    stage.step();
+    return refined;
+}
+
+std::optional<SceneLight> measure_scene_light(const importer::Scene& scene, const LightRays& rays, model::Model& model,
+                                              const Progress& progress) {
+    SceneLight found;
+    {
+        Stage stage(progress, "light", openness_steps(model));
+        found.openness = measure_openness(model, rays.opaque, on_all_cores, [&] { return stage.step(); });
+    }
+    if (progress.stopped()) return {};
+    const std::vector<vec3> emission = emission_of(scene, model, found.openness);
+    Stage stage(progress, "shadows", baked_light_steps(model));
+    found.baked = measure_baked_light(model, {rays.lamps, emission, found.openness.within, rays.opaque}, on_all_cores,
+                                      [&] { return stage.step(); });
+    if (progress.stopped()) return {};
+    return found;
+}
+
+void fill_scene_light(model::Model& model) {
+    model::SunSeen all{};
+    std::fill(std::begin(all.share), std::end(all.share), std::uint8_t{255});
+    if (!model.sun_seen.empty()) model.sun_seen.resize(model.vertices.size(), all);
+    if (!model.lamp_light.empty()) model.lamp_light.resize(model.vertices.size());
+}
+
+}  // namespace surefoot::bake

@@ -1,0 +1,45 @@
+// All that a bake of quality full finds out about light: what sees the sky, what the sun reaches, what lamps and glow add.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/bake/baked_light.hpp"
+#include "render/bake/openness.hpp"
+#include "render/bake/refine.hpp"
+#include "render/import/scene.hpp"
+#include "render/model/model.hpp"
+#include "rt/base/progress.hpp"
+
+namespace surefoot::bake {
+
+/// What was found, for the findings.
+struct SceneLight {
+    Openness openness;
+    BakedLight baked;
+};
+
+/// What is opaque in a scene, and its lamps: ready for rays.
+struct LightRays {
+    model::Ground ground;
+    RayTree opaque{ground};
+    LampField lamps;
+
+    LightRays(model::Ground of, const importer::Scene& scene) : ground(std::move(of)), lamps(scene.lamps, opaque) {}
+    LightRays(const LightRays&) = delete;
+    LightRays& operator=(const LightRays&) = delete;
+    ~LightRays() = default;
+};
+std::unique_ptr<LightRays> make_light_rays(const importer::Scene& scene, const Progress& progress);
+
+/// Meshes whose large triangles are cut for the light of the model's sun and of the scene's lamps. On the calling arena.
+RefinedMeshes refine_scene(const importer::Scene& scene, const model::Model& model, const LightRays& rays,
+                           const Progress& progress);
+/// Measures it on all cores of the calling arena. Before boxes are captured, since their pictures hold light. None: stopped.
+std::optional<SceneLight> measure_scene_light(const importer::Scene& scene, const LightRays& rays, model::Model& model,
+                                              const Progress& progress);
+/// Vertices that came later, of boxes, see all of the sun and no lamp.
+void fill_scene_light(model::Model& model);
+
+}  // namespace surefoot::bake
