@@ -216,7 +216,8 @@ Result<void> open_sections(Reading& in, std::span<const std::byte> table, std::s
     for (std::uint32_t id = 0; id < section_count; ++id) {
         if (required(id) && !in.sections[id]) return in.error(section_names[id], "The section is missing");
         const bool drawn = id != rest_section && id != losses_section && id != ground_section && id != tour_section;
-        if (drawn) in.model_hash = fnv1a(in.model_hash, hashes[id]);
+        const bool newer = id == light_section && !in.sections[id];  // files without it keep the hash that they had
+        if (drawn && !newer) in.model_hash = fnv1a(in.model_hash, hashes[id]);
     }
     return {};
 }
