@@ -45,8 +45,10 @@ struct Daylight {
     std::uint32_t sun_moment = 0;            ///< the first of two of SunSeen
 };
 
-/// Of SunSeen::share[i], i from 1: hours from sunrise to sunset, evenly spread. Where the sun never rises or never sets, of 24.
+/// Moments of SunSeen's day. They are evenly spread from sunrise to sunset, or over 24 hours where the sun never rises or never
+/// sets.
 constexpr std::uint32_t sun_moments = 15;
+/// moment: 0 at sunrise, sun_moments - 1 at sunset. Its share is SunSeen::share[moment + 1].
 double hour_of_moment(std::uint32_t moment, double day, double latitude_deg);
 
 /// As the bake saw it: the model's own sun, and lamps off.
