@@ -39,6 +39,27 @@ void share_parts(Model& m) {
     m.reps.resize(0x10008, all);
 }
 
+void add_light(Model& m) {
+    m.sun_seen.resize(m.vertices.size());
+    m.lamp_light.resize(m.vertices.size());
+}
+
+/// The material and its forms need the effect, and its finding calls for it.
+void call_for(Model& m, EffectMask effect) {
+    m.materials[0].effects |= effect;
+    for (Representation& rep : m.reps) rep.effects |= effect;
+    for (EffectFinding& finding : m.effects) finding.called_for = finding.called_for || finding.bit == effect;
+}
+
+TEST(Validate, AcceptsLightAtEveryVertex) {
+    Model model = two_triangles();
+    add_light(model);
+    call_for(model, effect_shadow);
+    call_for(model, effect_lamps);
+    const auto valid = validate(model);
+    EXPECT_TRUE(valid.ok()) << valid.error().text();
+}
+
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 INSTANTIATE_TEST_SUITE_P(
@@ -75,6 +96,21 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"FindingMissing", "effects", [](Model& m) { m.effects.pop_back(); }},
                     Wrong{"EffectNotCalledFor", "effects", [](Model& m) { m.effects[0].called_for = false; }},
                     Wrong{"MorePartsThanDrawingNumbers", "model", share_parts},
+                    Wrong{"SunSeenTooShort", "light", [](Model& m) { add_light(m), m.sun_seen.pop_back(); }},
+                    Wrong{"SunSeenTooLong", "light", [](Model& m) { add_light(m), m.sun_seen.push_back({}); }},
+                    Wrong{"LampLightTooShort", "light", [](Model& m) { add_light(m), m.lamp_light.pop_back(); }},
+                    Wrong{"LampLightTooLong", "light", [](Model& m) { add_light(m), m.lamp_light.push_back({}); }},
+                    Wrong{"ShadowsNowhere", "light", [](Model& m) { call_for(m, effect_shadow); }},
+                    Wrong{"LampsNowhere", "light", [](Model& m) { call_for(m, effect_lamps); }},
+                    Wrong{"NanDay", "light", [](Model& m) { m.light.day = nan; }},
+                    Wrong{"DayZero", "light", [](Model& m) { m.light.day = 0; }},
+                    Wrong{"NanLatitude", "light", [](Model& m) { m.light.latitude_deg = nan; }},
+                    Wrong{"BeyondThePole", "light", [](Model& m) { m.light.latitude_deg = -90.5; }},
+                    Wrong{"NanLamps", "light", [](Model& m) { m.light.max_lamp_light = nan; }},
+                    Wrong{"NoLampLight", "light", [](Model& m) { m.light.max_lamp_light = 0; }},
+                    Wrong{"EndlessLamps", "light", [](Model& m) { m.light.max_lamp_light = INFINITY; }},
+                    Wrong{"NanFog", "light", [](Model& m) { m.light.fog_visibility_m = nan; }},
+                    Wrong{"NegativeFog", "light", [](Model& m) { m.light.fog_visibility_m = -1; }},
                     Wrong{"SunNotUnit", "sun_direction", [](Model& m) { m.sun_direction = dvec3(0.0); }}),
     [](const auto& wrong) { return wrong.param.name; });
 
