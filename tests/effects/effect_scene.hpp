@@ -73,15 +73,15 @@ struct EffectScene {
         using namespace model;
         constexpr EffectMask lit = effect_sun | effect_openness;
         constexpr std::array<EffectMask, objects> own{
-            effect_texture | lit,
-            effect_vertex_colour | lit,
-            effect_texture | effect_vertex_colour | effect_sun,
-            lit,
-            effect_texture | lit,
-            effect_texture | effect_alpha_mask | lit,
-            effect_blend,
-            effect_texture | effect_blend | effect_sun,
-            effect_vertex_colour | lit,
+            effect_texture | lit | effect_shadow | effect_fog,
+            effect_vertex_colour | lit | effect_fog,
+            effect_texture | effect_vertex_colour | effect_sun | effect_shadow,
+            lit | effect_lamps,
+            effect_texture | lit | effect_shadow | effect_lamps | effect_fog,
+            effect_texture | effect_alpha_mask | lit | effect_lamps,
+            effect_blend | effect_fog,
+            effect_texture | effect_blend | effect_sun | effect_shadow,
+            effect_vertex_colour | lit | effect_shadow | effect_lamps,
             effect_texture,
         };
         return own[i];
@@ -101,6 +101,8 @@ struct EffectScene {
         add_walls(add);
         add_bodies(add);
         add_sheets(add);
+        scene.model().reps.back().kind = model::RepKind::textured_box;  // its picture holds the light of the bake
+        add_light(scene.model());
         return scene.finish();
     }
 
@@ -122,6 +124,21 @@ private:
         pose.orientation = glm::normalize(glm::quat_cast(dmat3(right, glm::cross(back, right), back)));
         pose.fov_y_rad = 1.25;
         return pose;
+    }
+    /// Shares and lamps differ from vertex to vertex, from moment to moment and from side to side.
+    static void add_light(model::Model& model) {
+        model.light.fog_visibility_m = 25;
+        for (unsigned v = 0; v < model.vertices.size(); ++v) {
+            model::SunSeen sun{};
+            for (unsigned i = 0; i < 16; ++i) sun.share[i] = static_cast<std::uint8_t>((v * 101 + i * 83) % 256);
+            model::LampLight lamps{};
+            for (unsigned i = 0; i < 3; ++i) {
+                lamps.before[i] = static_cast<std::uint8_t>((v * 71 + i * 47) % 200);
+                lamps.behind[i] = static_cast<std::uint8_t>((v * 43 + i * 89 + 120) % 200);
+            }
+            model.sun_seen.push_back(sun);
+            model.lamp_light.push_back(lamps);
+        }
     }
     static mat3 turned(float angle_rad, const vec3& axis) {
         return mat3(glm::mat3_cast(glm::angleAxis(angle_rad, glm::normalize(axis))));

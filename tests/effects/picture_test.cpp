@@ -1,4 +1,5 @@
-// Pictures against the reference: every effect alone and every pair of them, on each back end that opens here.
+// Pictures against the reference: every effect alone and every pair of them, on each back end that opens here. Each is drawn in
+// the model's own light, and in that of an evening.
 // To add an effect: its definition in reference_shading.hpp, its line in `tolerances`, and something for it in effect_scene.hpp.
 #include <gtest/gtest.h>
 
@@ -39,6 +40,9 @@ constexpr std::array<Tolerance, model::effect_count> tolerances{{
     {model::effect_alpha_mask, 1},
     {model::effect_blend, 2.5},  // the picture is rounded under each pane
     {model::effect_openness, 1.5},
+    {model::effect_shadow, 1.5},
+    {model::effect_lamps, 2},  // more light than white: it multiplies the rounded colour as well
+    {model::effect_fog, 1.5},
 }};
 /// Pixels at edges that may differ. Corners are rounded to a part of a pixel, and a driver may take one mip level for 2 x 2
 /// pixels.
@@ -77,6 +81,37 @@ Difference compare(const gl::PixelImage& image, const reference::Picture& expect
     return difference;
 }
 
+/// Low sun, lamps and fog: no number is the one that a device has after load.
+reference::Light evening() {
+    reference::Light light;
+    light.towards_sun = {-0.64, 0.6, 0.48};
+    light.sun = {0.6, 0.45, 0.25};
+    light.ground = {0.2, 0.22, 0.28};
+    light.sky = {0.3, 0.34, 0.5};
+    light.moment = 3;
+    light.between = 0.3;
+    light.lamps = 1.7;
+    light.fog_density = 0.11;
+    light.background = {0.5, 0.4, 0.65};
+    light.pictures = {0.83, 0.66, 0.71};
+    return light;
+}
+
+model::Daylight for_device(const reference::Light& light) {
+    model::Daylight out;
+    out.sun_direction = vec3(light.towards_sun);
+    out.sun_light = vec3(light.sun);
+    out.ground_light = vec3(light.ground);
+    out.sky_light = vec3(light.sky);
+    out.sun_moment = light.moment;
+    out.sun_between = static_cast<float>(light.between);
+    out.lamp_strength = static_cast<float>(light.lamps);
+    out.fog_density = static_cast<float>(light.fog_density);
+    out.background = vec3(light.background);
+    out.pictures = vec3(light.pictures);
+    return out;
+}
+
 class Pictures : public ::testing::TestWithParam<BackendKind> {
 protected:
     void SetUp() override {
@@ -94,9 +129,14 @@ protected:
         const auto loaded = device_->load(model, programs);
         ASSERT_TRUE(loaded.ok()) << loaded.error().text();
     }
-    gl::PixelImage picture(const model::Model& model, const Pose& pose) {
+    void set_light(const reference::Light& light) {
+        device_->draws.plays();
+        device_->set_light(for_device(light));
+    }
+    /// Of every object, or of each step-th.
+    gl::PixelImage picture(const model::Model& model, const Pose& pose, model::Index step = 1) {
         std::vector<gl::DrawItem> items;
-        for (model::Index n = 1; n < model.nodes.size(); ++n)
+        for (model::Index n = 1; n < model.nodes.size(); n += step)
             items.push_back({n, model.nodes[n].first_rep + model.nodes[n].rep_count - 1});
         device_->draws.plays();
         device_->begin_frame(pose);
@@ -108,21 +148,28 @@ protected:
         EXPECT_TRUE(image.ok());
         return image.ok() ? *image : gl::PixelImage{side, side, std::vector<std::uint8_t>(std::size_t{4} * side * side)};
     }
-    std::vector<Difference> differences(const model::Model& model, double steps,
-                                        const gl::ProgramFactory& programs = effects::assemble_program) {
-        load(model, programs);
+    Difference difference(const model::Model& model, const Pose& pose, const reference::Light& light, double steps) {
+        const dvec3 sky(model::usual_sky[0], model::usual_sky[1], model::usual_sky[2]);
+        const reference::Picture expected = reference::draw({model, pose, {side, side}, sky, light});
+        return compare(picture(model, pose), expected, steps);
+    }
+    /// Of all poses in the light that the device has after load, or in another.
+    std::vector<Difference> differences(const model::Model& model, double steps, const reference::Light* other = nullptr) {
+        if (other != nullptr) set_light(*other);
         std::vector<Difference> all;
-        for (const Pose& pose : scene_.poses()) {
-            const dvec3 sky(model::usual_sky[0], model::usual_sky[1], model::usual_sky[2]);
-            const reference::Picture expected = reference::draw({model, pose, {side, side}, sky});
-            all.push_back(compare(picture(model, pose), expected, steps));
-        }
+        for (const Pose& pose : scene_.poses())
+            all.push_back(difference(model, pose, other != nullptr ? *other : reference::own_light(model), steps));
         return all;
     }
     void expect_equal(const model::Model& model, EffectMask mask) {
-        const std::vector<Difference> poses = differences(model, steps_of(mask));
+        load(model);
+        expect_equal(differences(model, steps_of(mask)), mask, " by its own light");
+        const reference::Light other = evening();
+        expect_equal(differences(model, steps_of(mask), &other), mask, " in the evening");
+    }
+    static void expect_equal(const std::vector<Difference>& poses, EffectMask mask, const std::string& light) {
         for (std::size_t i = 0; i < poses.size(); ++i) {
-            const std::string where = effects::effects_text(mask) + ", pose " + std::to_string(i);
+            const std::string where = effects::effects_text(mask) + light + ", pose " + std::to_string(i);
             EXPECT_EQ(poses[i].interior, 0U) << where << ": " << poses[i].worst << " steps off, " << steps_of(mask) << " allowed";
             EXPECT_LE(poses[i].at_edges, max_at_edges) << where;
             EXPECT_GT(poses[i].interior_pixels, side * side / 4U) << where << ": nearly all is edges";
@@ -163,9 +210,61 @@ TEST_P(Pictures, differ_from_the_reference_where_a_program_leaves_an_effect_out)
     const model::Model model = scene_.build(test::EffectScene::own_effects);
     for (const auto& module : effects::all_effects()) {
         const auto without = [&](EffectMask mask) { return effects::assemble_program(mask & ~module.bit); };
+        load(model, without);
+        const auto expect_wrong = [&](const std::vector<Difference>& poses, const char* light) {
+            std::size_t wrong = 0;
+            for (const Difference& difference : poses) wrong += difference.interior;
+            EXPECT_GT(wrong, 20U) << module.name << light;
+        };
+        if (module.bit != model::effect_lamps) expect_wrong(differences(model, steps_of(all_bits)), " by its own light");
+        const reference::Light other = evening();
+        expect_wrong(differences(model, steps_of(all_bits), &other), " in the evening");
+    }
+}
+
+TEST_P(Pictures, differ_from_the_reference_where_the_light_is_another_in_one_number) {
+    const model::Model model = scene_.build(test::EffectScene::own_effects);
+    load(model);
+    const std::vector<std::pair<const char*, void (*)(reference::Light&)>> changes{
+        {"sun's direction", [](auto& l) { l.towards_sun.x = 0.64; }},
+        {"sun", [](auto& l) { l.sun.g += 0.1; }},
+        {"ground", [](auto& l) { l.ground.b += 0.1; }},
+        {"sky", [](auto& l) { l.sky.r += 0.1; }},
+        {"moment", [](auto& l) { l.moment = 4; }},
+        {"between", [](auto& l) { l.between = 0.7; }},
+        {"lamps", [](auto& l) { l.lamps = 1.5; }},
+        {"fog", [](auto& l) { l.fog_density = 0.09; }},
+        {"background", [](auto& l) { l.background.r += 0.1; }},
+        {"pictures", [](auto& l) { l.pictures.g += 0.1; }},
+    };
+    for (const auto& [name, change] : changes) {
+        reference::Light other = evening();
+        change(other);
+        set_light(other);
         std::size_t wrong = 0;
-        for (const Difference& difference : differences(model, steps_of(all_bits), without)) wrong += difference.interior;
-        EXPECT_GT(wrong, 20U) << module.name;
+        for (const Pose& pose : scene_.poses()) wrong += difference(model, pose, evening(), steps_of(all_bits)).interior;
+        EXPECT_GT(wrong, 20U) << name;
+    }
+}
+
+// Each program reads the shares of its moment from one buffer. Pictures of another moment between draw every third object: their
+// programs are at that moment, and the others are behind.
+TEST_P(Pictures, follow_the_moment_from_frame_to_frame_with_every_program) {
+    const model::Model model = scene_.build(test::EffectScene::own_effects);
+    load(model);
+    const std::vector<Pose> poses = scene_.poses();
+    std::size_t frame = 0;
+    for (const std::uint32_t moment : {0U, 14U, 3U, 14U, 14U, 1U, 0U, 13U, 0U, 14U}) {
+        reference::Light light = evening();
+        light.moment = (moment + 5) % 15;
+        set_light(light);
+        picture(model, poses[0], 3);
+        light.moment = moment;
+        light.between = 0.1 * static_cast<double>(frame);
+        set_light(light);
+        const Difference found = difference(model, poses[frame++ % poses.size()], light, steps_of(all_bits));
+        EXPECT_EQ(found.interior, 0U) << "frame " << frame << ", moment " << moment << ": " << found.worst << " steps off";
+        EXPECT_LE(found.at_edges, max_at_edges) << "frame " << frame;
     }
 }
 

@@ -114,6 +114,7 @@ struct ScreenTriangle {
 struct DrawnPart {
     double distance_m = 0;  ///< from the eye to the middle of its node's box
     model::Index node = 0, part = 0, placement = 0;
+    bool captured = false;  ///< a picture that holds the light of the bake
 };
 
 /// Draws one pixel. Blended surfaces are hidden by opaque ones, and hide nothing themselves.
@@ -160,7 +161,7 @@ inline void draw(Picture& picture, const View& view, const DrawnPart& drawn) {
         std::array<Corner, 3> triangle;
         for (std::uint32_t c = 0; c < 3; ++c) {
             const std::uint32_t vertex = part.first_vertex + view.model.indices[part.first_index + i + c];
-            triangle[c] = corner_at(view, material, placement, view.model.vertices[vertex]);
+            triangle[c] = corner_at(view, material, placement, vertex, drawn.captured);
         }
         const dvec3 edge = triangle[1].from_eye - triangle[0].from_eye, other = triangle[2].from_eye - triangle[0].from_eye;
         const dvec3 normal = (mirrored ? -1.0 : 1.0) * glm::normalize(glm::cross(edge, other));
@@ -185,9 +186,10 @@ inline Picture draw(const View& view) {
         if (node.child_count != 0) continue;
         const model::Representation& rep = view.model.reps[node.first_rep + node.rep_count - 1];
         const double distance_m = glm::length(0.5 * (node.box.min + node.box.max) - view.pose.position);
+        const bool captured = rep.kind == model::RepKind::textured_box;
         for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
             const bool last = has(view.model.materials[view.model.parts[p].material], model::effect_blend);
-            (last ? blended : opaque).push_back({distance_m, n, p, rep.placement});
+            (last ? blended : opaque).push_back({distance_m, n, p, rep.placement, captured});
         }
     }
     std::sort(blended.begin(), blended.end(), [](const DrawnPart& a, const DrawnPart& b) {
@@ -195,7 +197,7 @@ inline Picture draw(const View& view) {
     });
     const std::size_t pixels = std::size_t{view.viewport.width} * view.viewport.height;
     Picture picture{view.viewport.width, view.viewport.height, {}, {}, {}, {}};
-    picture.colours.assign(pixels, view.sky);
+    picture.colours.assign(pixels, view.behind());
     picture.nearness.assign(pixels, 0.0);
     picture.seen.assign(pixels, 0);
     picture.close_call.assign(pixels, false);

@@ -13,12 +13,34 @@
 
 namespace surefoot::reference {
 
-/// A model, where it is seen from, and what shows where it is not.
+/// The light of a moment. A colour of 1 is white.
+struct Light {
+    dvec3 towards_sun{0, 1, 0};
+    dvec3 sun{0.56, 0.53, 0.47}, ground{0.34, 0.32, 0.30}, sky{0.52, 0.56, 0.62};
+    std::uint32_t moment = 0;  ///< it is between this share of the sun and the next
+    double between = 0;        ///< 0: at this one, 1: at the next
+    double lamps = 0;          ///< light of a lamp's full byte
+    double fog_density = 0;    ///< at a distance of 1 / density, half is left
+    dvec3 background{1.0};     ///< multiplies the sky, which is the fog's colour too
+    dvec3 pictures{1.0};       ///< multiplies what was captured by the light of the bake
+};
+
+/// As it is where nobody sets another: lamps are off. At the visibility, one part in twenty comes through the fog.
+inline Light own_light(const model::Model& model) {
+    Light light;
+    light.towards_sun = model.sun_direction;
+    if (model.light.fog_visibility_m > 0) light.fog_density = std::log2(20.0) / model.light.fog_visibility_m;
+    return light;
+}
+
+/// A model, where it is seen from, in which light, and what shows where it is not.
 struct View {
     const model::Model& model;
     Pose pose;
     model::Viewport viewport;
     dvec3 sky{0.0};
+    Light light{};
+    [[nodiscard]] dvec3 behind() const { return sky * light.background; }  ///< the colour behind everything
 };
 
 /// What a corner of a triangle hands to its pixels. All of it varies evenly in space, not on the picture.
@@ -32,6 +54,8 @@ struct Corner {
 struct LitSide {
     dvec3 normal{0.0};         ///< unit, world
     double sky = 1, room = 1;  ///< shares that are not hidden
+    double sun = 1;            ///< share of the sun that shines on it
+    dvec3 lamps{0.0};          ///< light of all lamps
 };
 
 /// A pixel of a triangle, before its colour is known.
@@ -48,10 +72,11 @@ inline dvec3 light_at_vertex(const View& view, const model::Material& material, 
     const dvec3& n = side.normal;
     dvec3 light(1.0);
     if (has(material, model::effect_sun)) {  // a hemisphere from ground to sky, and one sun
-        const dvec3 ground(0.34, 0.32, 0.30), sky(0.52, 0.56, 0.62), sun(0.56, 0.53, 0.47);
+        const Light& of = view.light;
         const double up = 0.5 + 0.5 * n.y;
-        const double facing = glm::dot(n, view.model.sun_direction) / glm::length(view.model.sun_direction);
-        light *= (1.0 - up) * ground + up * sky + std::max(facing, 0.0) * sun;
+        const double facing = std::max(0.0, glm::dot(n, of.towards_sun) / glm::length(of.towards_sun));
+        const double share = has(material, model::effect_shadow) ? side.sun : 1.0;
+        light *= (1.0 - up) * of.ground + up * of.sky + share * facing * of.sun;
     }
     if (has(material, model::effect_openness)) {  // a quarter of the sky is enough for all of the light outside
         const dvec3 of_room = dvec3(0.98, 0.95, 0.91) + dvec3(0.06 * n.x + 0.12 * n.y - 0.04 * n.z);
@@ -59,11 +84,27 @@ inline dvec3 light_at_vertex(const View& view, const model::Material& material, 
         light = (1.0 - outside) * of_room + outside * light;
         light *= 0.6 + 0.4 * side.room;
     }
+    if (has(material, model::effect_lamps)) light += side.lamps;  // they are near: neither sky nor corners change them
     return light;
 }
 
+/// The share of the sun that a vertex sees now: on the line between those of two moments.
+inline double sun_at_vertex(const View& view, std::uint32_t vertex) {
+    const std::uint8_t* const shares = &view.model.sun_seen[vertex].share[view.light.moment];
+    return (shares[0] + view.light.between * (shares[1] - shares[0])) / 255.0;
+}
+
+/// The light of lamps on one side of a vertex. The model has its root, so that little light has fine steps.
+inline dvec3 lamps_at_vertex(const View& view, std::uint32_t vertex, bool behind) {
+    const model::LampLight& stored = view.model.lamp_light[vertex];
+    const std::uint8_t* const root = behind ? stored.behind : stored.before;
+    return view.light.lamps * dvec3(root[0] * root[0], root[1] * root[1], root[2] * root[2]) / (255.0 * 255.0);
+}
+
 /// The lit side of a vertex. A two-sided surface is lit on the side that the eye sees.
-inline LitSide lit_side(const model::Material& material, const dmat3& linear, const model::Vertex& v, const dvec3& from_eye) {
+inline LitSide lit_side(const View& view, const model::Material& material, const dmat3& linear, std::uint32_t vertex,
+                        const dvec3& from_eye) {
+    const model::Vertex& v = view.model.vertices[vertex];
     const dvec3 stored = glm::max(dvec3(v.normal[0], v.normal[1], v.normal[2]) / 127.0, dvec3(-1.0));
     LitSide side;
     side.normal = glm::normalize(glm::transpose(glm::inverse(linear)) * stored);
@@ -71,19 +112,32 @@ inline LitSide lit_side(const model::Material& material, const dmat3& linear, co
     if (behind) side.normal = -side.normal;
     side.sky = 1.0 - v.hidden[behind ? 1 : 0] / 255.0;
     side.room = 1.0 - v.hidden[behind ? 3 : 2] / 255.0;
+    if (has(material, model::effect_shadow)) side.sun = sun_at_vertex(view, vertex);
+    if (has(material, model::effect_lamps)) side.lamps = lamps_at_vertex(view, vertex, behind);
     return side;
 }
 
+/// A material's colour. That of a captured picture goes with the light, in steps of a byte.
+inline dvec4 material_colour(const View& view, const model::Material& material, bool captured) {
+    dvec4 colour(material.colour[0], material.colour[1], material.colour[2], material.colour[3]);
+    for (int i = 0; i < 3 && captured; ++i) {
+        const double byte = std::round(255.0 * colour[i]) * view.light.pictures[i];
+        colour[i] = std::min(255.0, std::round(byte)) / 255.0;
+    }
+    return colour;
+}
+
 inline Corner corner_at(const View& view, const model::Material& material, const model::Placement& placement,
-                        const model::Vertex& v) {
+                        std::uint32_t vertex, bool captured) {
+    const model::Vertex& v = view.model.vertices[vertex];
     const dmat3 linear(placement.linear);
     Corner corner;
     corner.from_eye = placement.origin - view.pose.position + linear * dvec3(v.position[0], v.position[1], v.position[2]);
     corner.uv = dvec2(v.uv[0], v.uv[1]);
-    corner.colour = dvec4(material.colour[0], material.colour[1], material.colour[2], material.colour[3]);
+    corner.colour = material_colour(view, material, captured);
     if (has(material, model::effect_vertex_colour))
         corner.colour *= dvec4(v.colour[0], v.colour[1], v.colour[2], v.colour[3]) / 255.0;
-    const dvec3 light = light_at_vertex(view, material, lit_side(material, linear, v, corner.from_eye));
+    const dvec3 light = light_at_vertex(view, material, lit_side(view, material, linear, vertex, corner.from_eye));
     corner.colour *= dvec4(light, 1.0);
     return corner;
 }
@@ -147,6 +201,11 @@ inline Shade colour_at_pixel(const View& view, const model::Material& material, 
         shade.is_close_call = std::abs(shade.colour.a - material.alpha_cutoff) < 2.0 / 255.0;
     }
     if (!has(material, model::effect_blend)) shade.colour.a = 1;
+    if (has(material, model::effect_fog)) {  // it takes a pixel's colour, and leaves how much of it shows
+        const double depth_m = glm::dot(fragment.at.from_eye, view.pose.forward());
+        const double left = std::pow(2.0, -view.light.fog_density * depth_m);
+        shade.colour = dvec4(left * dvec3(shade.colour) + (1.0 - left) * view.behind(), shade.colour.a);
+    }
     shade.colour = glm::clamp(shade.colour, 0.0, 1.0);
     return shade;
 }
