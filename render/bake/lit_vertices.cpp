@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace surefoot::bake {
 
@@ -98,17 +99,23 @@ void add_nearest(const model::Model& model, const VertexRange& range, const std:
         const std::int8_t* n = model.vertices[range.first + v].normal;
         return vec3(n[0], n[1], n[2]) / 127.0F;
     };
+    if (std::none_of(open.begin(), open.end(), [](bool o) { return o; })) return;
     std::vector<bool> used(range.count, false);
     for (const model::Index p : range.parts)
         for (std::uint32_t i = 0; i < model.parts[p].index_count; ++i) used[model.indices[model.parts[p].first_index + i]] = true;
+    std::vector<std::pair<float, std::uint32_t>> known;  // by x
+    for (std::uint32_t v = 0; v < range.count; ++v)
+        if (used[v] && !unknown[v]) known.emplace_back(at(v).x, v);
+    std::sort(known.begin(), known.end());
     for (std::uint32_t v = 0; v < range.count; ++v) {
         if (!open[v]) continue;
         float min_m = max_m;
         std::uint32_t nearest = range.count;
-        for (std::uint32_t other = 0; other < range.count; ++other) {
-            if (unknown[other] || !used[other] || glm::dot(normal(v), normal(other)) < min_alike) continue;
-            const float distance = glm::length(at(other) - at(v));
-            if (distance < min_m) min_m = distance, nearest = other;
+        for (auto other = std::lower_bound(known.begin(), known.end(), std::pair(at(v).x - max_m, std::uint32_t{0}));
+             other != known.end() && other->first <= at(v).x + max_m; ++other) {
+            const float distance = glm::length(at(other->second) - at(v));
+            if (distance < min_m && glm::dot(normal(v), normal(other->second)) >= min_alike)
+                min_m = distance, nearest = other->second;
         }
         if (nearest < range.count) out.push_back({v, {nearest}});
     }

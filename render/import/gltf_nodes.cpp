@@ -203,6 +203,17 @@ std::vector<int> nodes_without_parent(const tinygltf::Model& model) {
     return roots;
 }
 
+/// Extras `fog_visibility_m` of the scene.
+void read_fog(const tinygltf::Scene& from, Scene& scene) {
+    if (!from.extras.IsObject() || !from.extras.Has("fog_visibility_m")) return;
+    const tinygltf::Value& value = from.extras.Get("fog_visibility_m");
+    const double visibility_m = value.IsNumber() ? value.GetNumberAsDouble() : -1;
+    if (visibility_m >= 0 && visibility_m <= 1e7)  // NaN is neither
+        scene.fog_visibility_m = visibility_m;
+    else
+        scene.warnings.push_back("Scene: the extra 'fog_visibility_m' is no number of 0 to 1e7 metres; there is no fog");
+}
+
 std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {
     if (model.scenes.empty()) return nodes_without_parent(model);
     const int wanted = model.defaultScene;
@@ -211,7 +222,9 @@ std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {
         scene.warnings.push_back(fmt::format("Default scene {} does not exist; the first is taken", wanted));
     if (model.scenes.size() > 1)
         scene.warnings.push_back(fmt::format("The file has {} scenes; only one is taken", model.scenes.size()));
-    return model.scenes[exists ? static_cast<std::size_t>(wanted) : 0].nodes;
+    const tinygltf::Scene& taken = model.scenes[exists ? static_cast<std::size_t>(wanted) : 0];
+    read_fog(taken, scene);
+    return taken.nodes;
 }
 
 /// What stands for an object: its nodes are placed behind those of the scene, joined, and taken away again.

@@ -28,7 +28,7 @@ double half_day_h(double day, double latitude_deg) {
 void set_by_height(Daylight& light) {
     const double height_deg = std::asin(std::clamp(static_cast<double>(light.sun_direction.y), -1.0, 1.0)) / degree;
     const float day = smooth(-8, 12, height_deg), sun = smooth(-1, 12, height_deg), low = 1 - smooth(2, 20, height_deg);
-    const vec3 night_ground(0.05F, 0.055F, 0.07F), night_sky(0.08F, 0.09F, 0.13F);
+    const vec3 night_ground(0.09F, 0.095F, 0.12F), night_sky(0.14F, 0.155F, 0.20F);
     light.sun_light *= sun * vec3(1.0F, 1.0F - 0.25F * low, 1.0F - 0.5F * low);
     light.ground_light = glm::mix(night_ground, light.ground_light, day);
     light.sky_light = glm::mix(night_sky, light.sky_light, day);

@@ -27,6 +27,8 @@ struct BakeArguments {
     double level_ratio = 0;
     model::SunTime sun;
     CLI::Option* sun_hour = nullptr;
+    double fog_visibility_m = 0;
+    CLI::Option* fog = nullptr;
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     bool allow_incomplete = false, whole_objects = false, json = false;
 };
@@ -112,6 +114,7 @@ int run_bake(const BakeArguments& a, const Context& context) {
     options.whole_objects = a.whole_objects;
     options.level_ratio = a.level_ratio * 0.01;
     if (a.sun_hour->count() > 0) options.sun = a.sun;
+    if (a.fog->count() > 0) options.fog_visibility_m = a.fog_visibility_m;
     options.workers = settings->values.workers;
     options.frame_us = 1e6 / settings->values.rate_hz;
     options.costs = &*costs;
@@ -178,6 +181,10 @@ void add_bake(CLI::App& app, Context& context) {
         ->check(number_within(-90, 90, "degrees"))
         ->capture_default_str()
         ->needs(a->sun_hour);
+    a->fog = c->add_option("--fog", a->fog_visibility_m,
+                           "Metres that one sees far in fog: what is black keeps 5 % of its contrast there. 0: none. "
+                           "Default: extras.fog_visibility_m of the glTF scene")
+                 ->check(number_within(0, 1e7, "m"));
     add_setting(c, a->settings, "--workers", "workers", "Threads; 0: one per core. The result does not depend on it.");
     add_setting(c, a->settings, "--rate", "rate_hz", "Frame rate; no item of the model may cost more than 1/16 of a frame.");
     c->add_flag("--allow-incomplete", a->allow_incomplete,
