@@ -299,6 +299,7 @@ void Engine::set_light(const model::Daylight& light) {
     e.draws.plays();
     e.device->draws.plays();
     e.device->set_light(light);
+    e.watch.forget();
     e.rest_picture.leave();
 }
 
