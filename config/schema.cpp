@@ -107,6 +107,22 @@ std::vector<Entry> seat_entries() {
     };
 }
 
+/// What is drawn of the light at first, and the hour of the day.
+std::vector<Entry> light_entries() {
+    return {
+        flag("sunlight", "Light of sun and sky; false: colours as they are. A visitor may switch it (action sunlight, key L).",
+             &S::sunlight),
+        flag("shadows", "Places that something hides from the sun are darker. A visitor may switch it (action shadows, key J).",
+             &S::shadows),
+        flag("lamplight", "Light of every lamp and of what glows. A visitor may switch it (action lamplight, key K).",
+             &S::lamplight),
+        flag("haze", "What is far takes the colour of the sky. A visitor may switch it (action haze, key H).", &S::haze),
+        number("hour", "h", -1, 24, "Hour of the day that the light is of, by the sun; -1: the model's own light.", &S::hour),
+        number("hour_speed", "h/min", -600, 600, "Hours of the day that pass in a minute of the walk; 0: none. It needs an hour.",
+               &S::hour_speed),
+    };
+}
+
 std::vector<Entry> make_entries(const Registry& selectors, const Registry& backends) {
     return {
         file_name("model", "The .walk model, relative to this file's folder; \"\": none, so the command line must name one.",
@@ -159,8 +175,6 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
              "table.",
              &S::strict),
         flag("in_frame_check", "Between slices, draw stand-ins when the rest no longer fits the frame.", &S::in_frame_check),
-        flag("sunlight", "Light of sun and sky; false: colours as they are. A visitor may switch it (action sunlight, key L).",
-             &S::sunlight),
         flag("occlusion", "Leave out objects that are hidden from every possible pose of a frame.", &S::occlusion),
         flag("control", "Alternate the walk with a bare loop of the same cost, as a control for misses.", &S::control),
         integer("frame_core", "", -1, 4095, "Core of the frame thread; -1: chosen for the machine.", &S::frame_core),
@@ -211,6 +225,7 @@ Schema::Schema(Registry selectors, Registry backends, std::span<const Renamed> r
             entry.absent = selectors_.absent;
         else if (entry.key == "backend")
             entry.absent = backends_.absent;
+    insert_after("in_frame_check", light_entries());
     insert_after("steering", walker_entries());
     insert_after("height", picture_entries());
     insert_after("shift_y", seat_entries());

@@ -13,14 +13,16 @@
 #include <variant>
 #include <vector>
 
+#include "rt/base/light.hpp"
 #include "rt/base/modes.hpp"
 #include "rt/base/named.hpp"
 #include "rt/base/result.hpp"
 
 namespace surefoot::config {
 
-/// The initial values are the defaults, but for names out of registries: see Schema::defaults().
-struct Settings {
+/// The switches are what is drawn at first. The initial values are the defaults, but for names out of registries: see
+/// Schema::defaults().
+struct Settings : rt::Switches {
     std::string model_file;
     std::string path_file;           ///< empty: beside the model, else a generated tour
     std::string input_file;          ///< who steers; empty: the path is followed
@@ -52,7 +54,9 @@ struct Settings {
     rt::ClockKind clock = rt::ClockKind::real;
     int workers = 0;      ///< 0: one a core beside the frame thread's
     int rasterisers = 0;  ///< 0: one a core
-    bool fifo = true, strict = false, in_frame_check = true, occlusion = true, sunlight = true, control = false;
+    bool fifo = true, strict = false, in_frame_check = true, occlusion = true, control = false;
+    double hour = -1;            ///< of the day; -1: the model's own light stays
+    double hour_speed = 0;       ///< hours of the day in a minute of the walk
     int frame_core = -1;         ///< -1: chosen
     double rest_after_ms = 500;  ///< 0: never
     double slice_us = 1000;

@@ -202,6 +202,12 @@ Result<void> check(const Configuration& configuration) {
                      fmt::format("A budget of {} ms is longer than a frame at {} Hz ({:.3f} ms)", s.budget_ms, s.rate_hz,
                                  1000.0 / s.rate_hz),
                      "Lower the budget or the rate, or use late = \"float\"", ErrorKind::misuse};
+    if (s.hour < 0 && s.hour != -1)
+        return Error{place("hour"), fmt::format("The hour {} is not on a clock", s.hour),
+                     "Use 0 to 24, or -1 for the model's own light", ErrorKind::misuse};
+    if (s.hour_speed != 0 && s.hour < 0)
+        return Error{place("hour_speed"), fmt::format("A speed of {} h/min needs an hour to begin at", s.hour_speed),
+                     "Set the hour too, from 0 to 24", ErrorKind::misuse};
     if (auto problem = seat_problem(s))
         return Error{place(problem->key), std::move(problem->what), std::move(problem->remedy), ErrorKind::misuse};
     return {};

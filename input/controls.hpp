@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "rt/base/geometry.hpp"
+#include "rt/base/light.hpp"
 
 namespace surefoot::input {
 
@@ -53,8 +54,8 @@ struct MotionRequest {
     double turn = 0, look = 0;  ///< turn > 0: to the left (counter-clockwise from above); look > 0: upwards
     double speed = 0;           ///< -1..1: from the slowest to the fastest factor; 0 leaves it
     double zoom = 0;            ///< -1..1: how fast the field of view becomes narrower; below 0: wider again
-    bool next_viewpoint = false, reset = false, tour = false, pause = false,
-         sunlight = false;                    ///< edges: true in the sample they happen in
+    bool next_viewpoint = false, reset = false, tour = false, pause = false;  ///< edges: true in the sample they happen in
+    std::uint32_t switched = 0;                                               ///< edges too: bit i is rt::light_switches[i]
     double turn_by_rad = 0, look_by_rad = 0;  ///< by a pointer: an angle, not a rate; in the sample it happens in, as edges
 };
 
@@ -71,7 +72,8 @@ struct Command {
 /// Counts of edges since the start. Newest-wins exchanges drop samples together with their edges. A reader that compares these
 /// counts with the last ones it handled loses no edge and takes none twice. Counts wrap.
 struct PressCounts {
-    std::uint32_t next_viewpoint = 0, reset = 0, tour = 0, pause = 0, sunlight = 0;
+    std::uint32_t next_viewpoint = 0, reset = 0, tour = 0, pause = 0;
+    rt::SwitchPresses light;
 };
 
 /// The sample for the frame thread; newest wins. At rest all is zero and the pose is held.

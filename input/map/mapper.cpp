@@ -142,7 +142,10 @@ void evaluate_button(Binding& b, DeviceOutput& output, const DeviceState& state,
             output.request.pause |= edge;
             break;
         case Action::sunlight:
-            output.request.sunlight |= edge;
+        case Action::shadows:
+        case Action::lamplight:
+        case Action::haze:
+            output.request.switched |= edge ? 1U << switch_of(b.action[0]) : 0U;
             break;
         case Action::dead_man:
             output.has_dead_man = true;

@@ -27,17 +27,25 @@ enum class Action : std::uint8_t {
     reset,
     tour,
     pause,
-    sunlight,    // edges, as in MotionRequest
+    sunlight,
+    shadows,
+    lamplight,
+    haze,        // edges, as in MotionRequest; the last four in the order of rt::light_switches
     dead_man,    // walks only while held
     stop,        // emergency stop: latched
     stop_reset,  // clears the latch once the stop is no longer asserted
 };
-constexpr std::size_t action_count = 16;
+constexpr std::size_t action_count = 19;
 
 /// As in TOML: "forward", "next_viewpoint", ...; index is the Action.
 std::span<const std::string_view> action_names();
 std::string_view name_of(Action action);
 [[nodiscard]] constexpr bool has_size(Action a) { return a >= Action::forward && a <= Action::zoom; }
+/// Of an action that switches light: its index in rt::light_switches.
+[[nodiscard]] constexpr std::size_t switch_of(Action a) {
+    return static_cast<std::size_t>(a) - static_cast<std::size_t>(Action::sunlight);
+}
+static_assert(switch_of(Action::haze) + 1 == rt::switch_count);
 /// Whether the action moves the walker. The neutral interlock watches these. Speed and zoom it does not: a throttle keeps its
 /// place.
 [[nodiscard]] constexpr bool moves(Action a) { return a >= Action::forward && a <= Action::look; }

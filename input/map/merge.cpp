@@ -54,7 +54,7 @@ MotionRequest merge(std::span<const MotionRequest> requests) {
         sum.reset |= request.reset;
         sum.tour |= request.tour;
         sum.pause |= request.pause;
-        sum.sunlight |= request.sunlight;
+        sum.switched |= request.switched;
     }
     bound(sum);
     return sum;

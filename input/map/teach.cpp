@@ -246,6 +246,12 @@ std::string Teach::question() const {
             return "Press the button that starts the tour";
         case Action::sunlight:
             return "Press the button that switches the sunlight";
+        case Action::shadows:
+            return "Press the button that switches the shadows";
+        case Action::lamplight:
+            return "Press the button that switches the lamplight";
+        case Action::haze:
+            return "Press the button that switches the haze";
         default:
             return "Press the button that pauses";
     }

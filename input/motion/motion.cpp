@@ -67,7 +67,7 @@ void count(PressCounts& presses, const MotionRequest& request) {
     presses.reset += request.reset ? 1 : 0;
     presses.tour += request.tour ? 1 : 0;
     presses.pause += request.pause ? 1 : 0;
-    presses.sunlight += request.sunlight ? 1 : 0;
+    for (std::size_t i = 0; i < rt::switch_count; ++i) presses.light.*rt::light_switches[i].presses += request.switched >> i & 1U;
 }
 
 void follow(MotionState& state, const MotionLimits& limits, const MotionRequest& request, Order order, double dt_s) {

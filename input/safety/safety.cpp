@@ -18,7 +18,8 @@ bool requests_motion(const MotionRequest& w) {
 }
 
 MotionRequest without_edges(MotionRequest request) {
-    request.next_viewpoint = request.reset = request.tour = request.pause = request.sunlight = false;
+    request.next_viewpoint = request.reset = request.tour = request.pause = false;
+    request.switched = 0;
     request.turn_by_rad = request.look_by_rad = 0;
     return request;
 }
@@ -96,7 +97,7 @@ DeviceOutput combined(const DeviceOutput& older, const DeviceOutput& newer) {
     both.request.reset |= older.request.reset;
     both.request.tour |= older.request.tour;
     both.request.pause |= older.request.pause;
-    both.request.sunlight |= older.request.sunlight;
+    both.request.switched |= older.request.switched;
     both.request.turn_by_rad += older.request.turn_by_rad;
     both.request.look_by_rad += older.request.look_by_rad;
     both.has_stop |= older.has_stop;

@@ -39,6 +39,9 @@ constexpr UsualKey usual_keys[] = {
     {"key-t", Action::tour, 1},
     {"key-p", Action::pause, 1},
     {"key-l", Action::sunlight, 1},
+    {"key-j", Action::shadows, 1},
+    {"key-k", Action::lamplight, 1},
+    {"key-h", Action::haze, 1},
 };
 
 DeviceMapping usual_mapping(double deg_per_px) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "rt/base/light.hpp"
 #include "rt/base/modes.hpp"
 #include "rt/base/shown.hpp"
 
@@ -97,7 +98,7 @@ struct FrameRecord {
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
     ShownBy shown_by = ShownBy::nothing;
     bool at_rest = false;  ///< no cut was drawn: the shown picture stays, or full detail replaces it
-    bool sunlight = true;  ///< frames of the walk: it was drawn, where the model has any
+    ShownLight light;      ///< of the walk's frames
     bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss
     Cause cause = Cause::none;
     std::uint32_t block = 0;              ///< control blocks: number of the 2 s block

@@ -222,6 +222,26 @@ TEST(Settings, BudgetLongerThanTheFrameIsRefusedUnderLock) {
     EXPECT_TRUE(check(c).ok());
 }
 
+TEST(Settings, AnHourIsOnTheClockAndOnlyAnHourRuns) {
+    refused("hour = 24.5\n", 1, "hour = 24.5 is not allowed", "from -1 to 24 (h)");
+    refused("hour = -2\n", 1, "hour = -2 is not allowed", "from -1 to 24 (h)");
+    refused("hour = 12\nhour_speed = 601\n", 2, "hour_speed = 601 is not allowed", "from -600 to 600 (h/min)");
+    refused("hour = nan\n", 1, "hour = nan is not allowed");
+    const auto checked = [](const std::string& text) {
+        Configuration c(toy_schema());
+        EXPECT_TRUE(load_text(c, text, "s.toml").ok()) << text;
+        const auto ok = check(c);
+        return ok ? std::string("ok") : ok.error().text();
+    };
+    EXPECT_EQ(checked(""), "ok");
+    for (const std::string hour : {"-1", "0", "6.5", "24"}) EXPECT_EQ(checked("hour = " + hour + "\n"), "ok");
+    EXPECT_NE(checked("hour = -0.5\n").find("hour (s.toml:1): The hour -0.5 is not on a clock"), std::string::npos);
+    EXPECT_NE(checked("\nhour_speed = 2\n").find("hour_speed (s.toml:2): A speed of 2 h/min needs an hour to begin at"),
+              std::string::npos);
+    EXPECT_EQ(checked("hour_speed = 2\nhour = 0\n"), "ok");
+    EXPECT_EQ(checked("hour_speed = -2\nhour = 12\n"), "ok");
+}
+
 TEST(Settings, CommentedDefaultsChangeNothingWithOrWithoutTheComments) {
     Configuration c(toy_schema());
     std::string text = commented_defaults(toy_schema());

@@ -135,16 +135,34 @@ TEST(WindowSteering, LSwitchesTheSunlightOnceAPress) {
     rig.push({'l'});
     rig.push({});
     rig.run(5);
-    EXPECT_EQ(rig.sample.presses.sunlight, 1U) << "a tap between two steps";
+    EXPECT_EQ(rig.sample.presses.light.sunlight, 1U) << "a tap between two steps";
     rig.push({'l'});
     rig.run(50);
-    EXPECT_EQ(rig.sample.presses.sunlight, 2U) << "held, it is one press";
+    EXPECT_EQ(rig.sample.presses.light.sunlight, 2U) << "held, it is one press";
     EXPECT_EQ(rig.sample.presses.pause, 0U);
     WindowRig mapped("[[device]]\nproduct_name = \"window\"\n[[device.button]]\ncontrol = \"key-p\"\naction = \"sunlight\"\n");
     mapped.run(5);
     mapped.push({'p'});
     mapped.run(5);
-    EXPECT_EQ(mapped.sample.presses.sunlight, 1U) << "a steering file may put it elsewhere";
+    EXPECT_EQ(mapped.sample.presses.light.sunlight, 1U) << "a steering file may put it elsewhere";
+}
+
+TEST(WindowSteering, EachKeyOfTheLightSwitchesItsPartAlone) {
+    for (const auto& [key, name] : {std::pair{'l', "sunlight"}, {'j', "shadows"}, {'k', "lamplight"}, {'h', "haze"}}) {
+        for (const bool mapped : {false, true}) {
+            WindowRig rig(mapped ? "[[device]]\nproduct_name = \"window\"\n[[device.button]]\ncontrol = \"key-p\"\naction = \"" +
+                                       std::string(name) + "\"\n"
+                                 : "");
+            rig.run(5);
+            rig.push({mapped ? static_cast<std::uint32_t>('p') : static_cast<std::uint32_t>(key)});
+            rig.push({});
+            rig.run(50);
+            for (const rt::Switch& one : rt::light_switches)
+                EXPECT_EQ(rig.sample.presses.light.*one.presses, one.name == name ? 1U : 0U) << one.name << " by " << name;
+            EXPECT_EQ(rig.sample.presses.pause, 0U);
+            EXPECT_EQ(rig.violations, 0U);
+        }
+    }
 }
 
 TEST(WindowSteering, ThePointerTurnsExactlyAsFarAsItMoved) {

@@ -35,6 +35,7 @@ TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     records[1].input_stamp_ns = records[1].submitted_ns - 4'500'000;
     records[1].input_reports = 17;
     records[1].stopped = true;
+    records[1].light = {{true, false, true, false}, 17.5F};
     ASSERT_TRUE(write_ledger(in("l.csv"), records).ok());
     const auto lines = test::split(*read_text(in("l.csv")), '\n');
     ASSERT_EQ(lines.size(), records.size() + 1);
@@ -59,6 +60,10 @@ TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     EXPECT_EQ(miss["input_reports"], "17");
     EXPECT_EQ(miss["stopped"], "1");
     EXPECT_EQ(miss["cut_hash"], "0000000000001235");
+    EXPECT_EQ(miss["sunlight"] + miss["shadows"] + miss["lamplight"] + miss["haze"], "1010");
+    EXPECT_EQ(miss["hour"], "17.5000");
+    const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), "hour") - names.begin());
+    EXPECT_EQ(test::split(lines[1], ',').at(at), "") << "the model's own light";
     for (const auto& line : lines) EXPECT_EQ(test::split(line, ',').size(), names.size());
 }
 

@@ -1,6 +1,9 @@
 // surefoot walk: a real-time walk through a model, with its figures.
 #include <fmt/format.h>
 
+#include <array>
+#include <memory>
+
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/walk_settings.hpp"
@@ -156,15 +159,26 @@ void add_sources(CLI::App* c, walk::WalkRequest& r) {
                 "With --input devices: release an emergency stop that an earlier walk left latched");
 }
 
+/// What of the light is not drawn at first, and the hour.
+void add_light(CLI::App* c, const std::shared_ptr<SettingArguments>& a) {
+    constexpr std::array<const char*, rt::switch_count> without = {
+        "Colours as they are, without sun and sky light; key L of a window switches it, and the action sunlight of any device",
+        "The sun everywhere, as if nothing hid it; switched by key J and the action shadows",
+        "No light of any lamp, nor of what glows; switched by key K and the action lamplight",
+        "What is far keeps its colours; switched by key H and the action haze",
+    };
+    for (std::size_t i = 0; i < without.size(); ++i)
+        c->add_flag(fmt::format("--no-{}", rt::light_switches[i].name), a->no_light[i], without[i]);
+    add_setting(c, a, "--hour", "hour");
+    add_setting(c, a, "--hour-speed", "hour_speed");
+}
+
 /// What real time must have, and what is switched off or measured for comparison.
 void add_comparisons(CLI::App* c, WalkArguments& a) {
     c->add_flag("--strict", a.request.strict,
                 "Do not start if real time lacks anything: SCHED_FIFO, locked memory, an isolated core, thread placement or a "
                 "cost table");
     c->add_flag("--no-check", a.settings->no_check, "Disable the in-frame check (for comparison)");
-    c->add_flag(
-        "--no-sunlight", a.settings->no_sunlight,
-        "Colours as they are, without sun and sky light; key L of a window switches it, and the action sunlight of any device");
     c->add_flag("--no-occlusion", a.settings->no_occlusion, "Disable occlusion culling (for comparison)");
     c->add_flag("--no-correction", a.no_correction, "Disable the online correction of predicted costs (for comparison)");
     c->add_flag("--control", a.request.control,
@@ -221,7 +235,7 @@ void add_walk(CLI::App& app, Context& context) {
         "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
         "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)\n\n"
         "In a window, W A S D or the arrow keys walk, and Shift runs. E and Q or Page Up and Down fly up and down.\n"
-        "Z looks closer, as through binoculars, and X back.\n"
+        "Z looks closer, as through binoculars, and X back. L, J, K and H switch sunlight, shadows, lamplight and haze.\n"
         "Drag with the left mouse button to look around, or press the right one to capture the pointer. T follows the\n"
         "path, N goes to the next viewpoint, Home back to the start, and P pauses. F11 fills the screen. Escape releases\n"
         "a captured pointer, else it ends the walk with all figures and exit code 0, as closing the window does.\n"
@@ -258,6 +272,7 @@ void add_walk(CLI::App& app, Context& context) {
                  {{"--slice", "slice_us"}, {"--hysteresis", "hysteresis"}});
     c->add_option("--cost-noise", r.cost_noise, "With --clock virtual: relative noise of the costs")->check(number_within(0, 10));
     for (const char* experiment : {"--slice", "--hysteresis", "--cost-noise"}) c->get_option(experiment)->group(hidden_group);
+    add_light(c, a->settings);
     add_comparisons(c, *a);
     add_outputs(c, *a);
     c->callback([&context, a] { context.run = [a, &context] { return run_walk_command(*a, context); }; });

@@ -1,6 +1,7 @@
 // Options that are settings: read from a file and from the command line, through the same schema and limits for every command.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -19,7 +20,8 @@ struct SettingArguments {
         std::string flag, key, text;
     };
     std::vector<Setting> values;  ///< in the order given
-    bool no_fifo = false, no_check = false, no_occlusion = false, no_sunlight = false;
+    bool no_fifo = false, no_check = false, no_occlusion = false;
+    std::array<bool, rt::switch_count> no_light{};  ///< by switch
 };
 
 using FlagsAndKeys = std::initializer_list<std::pair<const char*, const char*>>;

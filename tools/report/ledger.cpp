@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 84> columns = {{
+constexpr std::array<Column, 88> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -101,7 +101,11 @@ constexpr std::array<Column, 84> columns = {{
     {"binding_node", [](auto& r, auto& f) { if (f.binding_node != rt::no_node) add(r, "{}", f.binding_node); }},
     {"one_more_ms", [](auto& r, auto& f) { add(r, "{:.5f}", f.one_more_ms); }},
     {"dropped_objects", [](auto& r, auto& f) { add(r, "{}", f.dropped_objects); }},
-    {"sunlight", [](auto& r, auto& f) { add(r, "{:d}", f.sunlight); }},
+    {"sunlight", [](auto& r, auto& f) { add(r, "{:d}", f.light.on.sunlight); }},
+    {"shadows", [](auto& r, auto& f) { add(r, "{:d}", f.light.on.shadows); }},
+    {"lamplight", [](auto& r, auto& f) { add(r, "{:d}", f.light.on.lamplight); }},
+    {"haze", [](auto& r, auto& f) { add(r, "{:d}", f.light.on.haze); }},
+    {"hour", [](auto& r, auto& f) { if (rt::has_hour(f.light)) add(r, "{:.4f}", f.light.hour); }},
     {"snapped", [](auto& r, auto& f) { add(r, "{:d}", f.snapped); }},
     {"cost_scale", [](auto& r, auto& f) { add(r, "{:.4f}", f.cost_scale); }},
     {"x", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[0]); }},

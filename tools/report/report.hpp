@@ -54,8 +54,9 @@ struct InputSummary {
     std::uint64_t stopped_frames = 0;         ///< that stood still by order: emergency stop or dead-man
     bool stop_latched = false;                ///< at the end
     std::uint64_t timeouts = 0, overflows = 0, losses = 0;
-    std::uint64_t next_viewpoint = 0, reset = 0, tour = 0, pause = 0, sunlight = 0;  ///< presses
-    std::uint64_t jumps = 0;                                                         ///< placings elsewhere
+    std::uint64_t next_viewpoint = 0, reset = 0, tour = 0, pause = 0;  ///< presses
+    rt::SwitchPresses switches;                                        ///< of the light
+    std::uint64_t jumps = 0;                                           ///< placings elsewhere
     bool walked = false;                   ///< walls and floors held the visitor; false: it flew, or the model has no ground
     std::uint64_t returns = 0, freed = 0;  ///< of the walker: from being stuck, and out of something solid
     double filter_lag_ms = 0;              ///< at most, of mapping and filter

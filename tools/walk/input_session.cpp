@@ -142,7 +142,7 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     s.reset = presses.reset;
     s.tour = presses.tour;
     s.pause = presses.pause;
-    s.sunlight = presses.sunlight;
+    s.switches = presses.light;
     s.jumps = tour_controller_->jumps() + walking_->jumps();
     if (const model::Walker* walker = walking_->walker()) {
         s.walked = walking_->walked();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "rt/base/light.hpp"
 #include "rt/base/path.hpp"
 #include "tools/walk/prepare_thread.hpp"
 
@@ -11,13 +12,13 @@ namespace surefoot::walk {
 /// The pose of one frame, and the input that it contains.
 struct FramePose {
     Pose pose;
-    Pose before;                         ///< one period earlier by the same motion; used if no frame has shown it
-    PredictedRegion predicted;           ///< possible poses of the next frames, if the source knows more than its last two poses
-    bool jumped = false;                 ///< a jump since the last frame: the last pose says nothing about this motion
-    bool stopped = false;                ///< stands still: emergency stop or dead-man
-    std::int64_t stamp_ns = 0;           ///< of the newest report in it; 0: none
-    std::uint64_t reports = 0;           ///< in it, since the walk began
-    std::uint32_t sunlight_presses = 0;  ///< so often it was switched; the number wraps
+    Pose before;                 ///< one period earlier by the same motion; used if no frame has shown it
+    PredictedRegion predicted;   ///< possible poses of the next frames, if the source knows more than its last two poses
+    bool jumped = false;         ///< a jump since the last frame: the last pose says nothing about this motion
+    bool stopped = false;        ///< stands still: emergency stop or dead-man
+    std::int64_t stamp_ns = 0;   ///< of the newest report in it; 0: none
+    std::uint64_t reports = 0;   ///< in it, since the walk began
+    rt::SwitchPresses switches;  ///< of the light, until then
 };
 
 /// The time of a frame, for a source.

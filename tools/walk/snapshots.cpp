@@ -11,6 +11,7 @@
 #include "render/measure/flip.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "rt/base/check.hpp"
+#include "tools/walk/light.hpp"
 
 namespace surefoot::walk {
 
@@ -33,7 +34,7 @@ SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std
 
 void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
                              rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
-                             std::span<const gl::DrawItem> culled, bool sunlight) {
+                             std::span<const gl::DrawItem> culled, const rt::ShownLight& light) {
     if (every_ == 0 || used_ == snapshots_.size()) return;
     if (frame % every_ != 0) {
         if ((frame + 1) % every_ == 0) remember_last(filter, drawn, culled);
@@ -48,7 +49,7 @@ void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pos
     snapshot.resolution = resolution;
     snapshot.filter = filter;
     snapshot.triangles = triangles;
-    snapshot.sunlight = sunlight;
+    snapshot.light = light;
     snapshot.items.assign(drawn.begin(), drawn.end());
     ++used_;
     if (every_ == 1 && used_ < snapshots_.size()) remember_last(filter, drawn, culled);
@@ -125,7 +126,7 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     if (engine.options().device.kind == gl::BackendKind::null) return out;  // nothing to look at
 
     engine.device().draws.plays();
-    engine.hide_effects(snapshot.sunlight ? 0 : model::EffectMask{model::effect_sun});
+    show_light(engine, snapshot.light);
     engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
@@ -169,7 +170,7 @@ Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::
         }
         progress.update("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
         const FrameSnapshot& snapshot = store.snapshots()[i];
-        engine.hide_effects(snapshot.sunlight ? 0 : model::EffectMask{model::effect_sun});
+        show_light(engine, snapshot.light);
         engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();

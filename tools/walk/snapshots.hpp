@@ -21,7 +21,7 @@ struct FrameSnapshot {
     float accuracy = 0, resolution = 1;
     rt::TextureFilter filter = rt::TextureFilter::automatic, last_filter = rt::TextureFilter::automatic;  ///< of last_items
     std::uint64_t triangles = 0;
-    bool sunlight = true;  ///< with sunlight
+    rt::ShownLight light;
     std::vector<gl::DrawItem> items;
     std::vector<gl::DrawItem> last_items;  ///< the frame before's, those outside its view included; empty: none was kept
 };
@@ -40,7 +40,7 @@ public:
     /// On the frame thread, after each frame. Frames that are not due, or beyond the store, are passed over.
     void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
                   rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
-                  std::span<const gl::DrawItem> culled = {}, bool sunlight = true);
+                  std::span<const gl::DrawItem> culled = {}, const rt::ShownLight& light = {});
     [[nodiscard]] const std::vector<FrameSnapshot>& snapshots() const { return snapshots_; }
     [[nodiscard]] std::size_t used() const { return used_; }
 

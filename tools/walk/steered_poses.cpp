@@ -32,7 +32,7 @@ FramePose SteeredPoses::pose_of(const FrameTime& time) const {
         out = path_poses_->sample(time);
         out.stamp_ns = s.nav.stamp_ns;
         out.reports = s.reports;
-        out.sunlight_presses = s.nav.presses.sunlight;
+        out.switches = s.nav.presses.light;
         return out;
     }
     const std::int64_t by_ns = std::clamp(time.due_ns - s.time_ns, -carry_limit_ns, carry_limit_ns);
@@ -45,7 +45,7 @@ FramePose SteeredPoses::pose_of(const FrameTime& time) const {
     out.stopped = s.nav.stopped;
     out.stamp_ns = s.nav.stamp_ns;
     out.reports = s.reports;
-    out.sunlight_presses = s.nav.presses.sunlight;
+    out.switches = s.nav.presses.light;
     if (s.touring) return out;  // the limits say nothing about a path: the last two poses do
     const double ahead_s = region_ahead_s(period_ns_);
     const input::Prediction ahead = input::predict(s.nav, limits_, ahead_s, s.walking ? walker_rise_m_s2 : 0);

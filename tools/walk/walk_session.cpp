@@ -11,6 +11,7 @@
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
 #include "render/select/registry.hpp"
+#include "tools/walk/light.hpp"
 #include "tools/walk/pose_source.hpp"
 #include "tools/walk/real_time.hpp"
 #include "tools/walk/settings_request.hpp"
@@ -102,8 +103,8 @@ void follow_display(Session& s) {
         fmt::format("screen: {}. Pictures are shown up to a refresh late. {}.", per_slot.error().what, per_slot.error().remedy));
 }
 
-/// `others`: cores beside the frame thread's.
-Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
+/// `others`: cores beside the frame thread's. `called_for`: the model's effects.
+Result<EngineOptions> engine_options(const WalkRequest& r, int others, model::EffectMask called_for) {
     const auto backend = gl::backend_named(r.backend);
     if (!backend) return backend.error();
     EngineOptions options;
@@ -117,7 +118,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.device.sky = config::colour_of(r.sky);
     options.device.fullscreen = r.fullscreen;
     const bool may_switch = !r.input_file.empty() || (r.may_steer && r.backend == window_input);
-    if (!r.sunlight || may_switch) options.device.switches = {model::effect_sun};
+    options.device.switches = switch_groups(r, may_switch, called_for);
     options.device.null.cost_scale = r.cost_scale;
     options.device.null.noise = r.cost_noise;
     options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);
@@ -197,7 +198,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     }
 
     const int others = s.plan.all.count() - (s.plan.all.has(s.plan.frame_core) ? 1 : 0);
-    auto options = engine_options(r, others);
+    auto options = engine_options(r, others, model->called_for());
     if (!options) return options.error();
     s.plan.workers = options->prepare.workers;
     options->prepare.worker_hooks = s.worker_places.emplace(s.plan).hooks();

@@ -7,6 +7,7 @@
 #include "rt/frame/blame.hpp"
 #include "rt/threads/guard.hpp"
 #include "tools/walk/frame_share.hpp"
+#include "tools/walk/light.hpp"
 
 namespace surefoot::walk {
 
@@ -138,7 +139,7 @@ void WalkStages::rehearse(std::int64_t until_ns) {
         const prepare::PreparedFrame& set = prepared_.front();
         limit_.count(set);
         const FramePose newest = pose_source_.sample({0, due_ns, clock_.now_ns()});
-        engine_.hide_effects(shows_sunlight(newest) ? 0 : model::EffectMask{model::effect_sun});
+        show(light_at(newest));
         publish_rehearsed(newest, due_ns);
         const std::int64_t begun_ns = due_ns;
         due_ns += options_.period_ns;
@@ -211,7 +212,19 @@ void WalkStages::sample(rt::FrameRecord& record) {
 
 FrameTime WalkStages::frame_time(const rt::FrameRecord& record) const { return {path_slot_, record.due_ns, clock_.now_ns()}; }
 
-bool WalkStages::shows_sunlight(const FramePose& at) const { return request_.sunlight == (at.sunlight_presses % 2 == 0); }
+rt::ShownLight WalkStages::light_at(const FramePose& at) const {
+    return {rt::switched(request_, at.switches), hour_at(request_, walk_time_s())};
+}
+
+/// An hour's light is worked out once, when it comes.
+void WalkStages::show(const rt::ShownLight& light) {
+    show_light(engine_, {light.on, light.hour == shown_hour_ ? rt::no_hour : light.hour});
+    shown_hour_ = light.hour;
+}
+
+double WalkStages::walk_time_s() const {
+    return static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
+}
 
 void WalkStages::take(const FramePose& from, rt::FrameRecord& record) {
     const Pose& pose = now_.pose = from.pose;
@@ -220,8 +233,8 @@ void WalkStages::take(const FramePose& from, rt::FrameRecord& record) {
     record.input_stamp_ns = from.stamp_ns;
     record.input_reports = from.reports;
     record.stopped = from.stopped;
-    record.sunlight = shows_sunlight(from);
-    engine_.hide_effects(record.sunlight ? 0 : model::EffectMask{model::effect_sun});
+    record.light = light_at(from);
+    show(record.light);
 }
 
 /// What came while the cut was chosen still counts, as far as the cut was made for it.
@@ -397,9 +410,8 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.floor_frame =
         follows && !report_.at_rest && engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
     keep(record);
-    const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
-    snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.resolution, record.filter, record.triangles,
-                        engine_.drawn(), engine_.culled(), record.sunlight);
+    snapshots_.remember(record.frame, walk_time_s(), now_.pose, record.accuracy, record.resolution, record.filter,
+                        record.triangles, engine_.drawn(), engine_.culled(), record.light);
 }
 
 }  // namespace surefoot::walk

@@ -92,7 +92,9 @@ private:
     [[nodiscard]] PrepareHints hints() const;
     void publish_rehearsed(const FramePose& newest, std::int64_t due_ns);
     void take(const FramePose& from, rt::FrameRecord& record);
-    [[nodiscard]] bool shows_sunlight(const FramePose& at) const;
+    [[nodiscard]] rt::ShownLight light_at(const FramePose& at) const;
+    void show(const rt::ShownLight& light);
+    [[nodiscard]] double walk_time_s() const;  ///< of the frame, from its due time
     void latch(rt::FrameRecord& record);
     /// What the frames at this resolution have taught, as far as predictions are corrected. filtered: those that bought the
     /// second mip level.
@@ -128,6 +130,7 @@ private:
     double time_left_us_ = 0;           ///< until the limit, as the last submission began
     std::uint64_t walked_ = 0;          ///< frames so far, with the rehearsed ones and without the control's bare ones
     std::uint64_t rehearsed_ = 0;       ///< of them
+    float shown_hour_ = rt::no_hour;    ///< that the engine was given last
     std::uint64_t path_slot_ = 0;       ///< position on the path, in periods; with a control it does not advance in bare blocks
     bool filtered_ = false;             ///< the last frame that was learnt from had the second mip level
     bool coarse_ = false;               ///< the last selection was Engine::select_last()

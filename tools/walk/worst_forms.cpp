@@ -8,6 +8,7 @@
 #include <span>
 
 #include "render/measure/image_metrics.hpp"
+#include "tools/walk/light.hpp"
 
 namespace surefoot::walk {
 
@@ -128,7 +129,7 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
     const std::uint32_t width = picture.width, height = picture.height;
     if (picture.walk.empty() || picture.full.empty()) return {};
     engine_.device().draws.plays();
-    engine_.hide_effects(snapshot.sunlight ? 0 : model::EffectMask{model::effect_sun});
+    show_light(engine_, snapshot.light);
     const SquaredErrors wrong(picture.walk, picture.full, width, height);
     mse_ += picture.mse;
     const model::Model& model = engine_.model();

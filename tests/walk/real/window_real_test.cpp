@@ -290,7 +290,8 @@ TEST_F(WindowWalk, LSwitchesTheSunOffAndOnWithinTwoFrames) {
     const auto outcome = walk_in_window(request, [&](FramesSoFar& frames) {
         using Frames = FramesSoFar::Frames;
         const auto settled_picture = [&](bool sun, std::int64_t from_ns) {
-            EXPECT_TRUE(frames.wait(from_ns, [&](const Frames& f) { return f.size() > 20 && f.back().sunlight == sun; })) << sun;
+            EXPECT_TRUE(frames.wait(from_ns, [&](const Frames& f) { return f.size() > 20 && f.back().light.on.sunlight == sun; }))
+                << sun;
             return visitor_->look_at_screen();
         };
         visitor_->find_window();
@@ -306,12 +307,12 @@ TEST_F(WindowWalk, LSwitchesTheSunOffAndOnWithinTwoFrames) {
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
     EXPECT_GT(different(sunny, dark), 500U) << "of 4800 pixels";
     EXPECT_GT(different(dark, again), 500U);
-    EXPECT_EQ(outcome->summary.input.sunlight, 2U);
+    EXPECT_EQ(outcome->summary.input.switches.sunlight, 2U);
     EXPECT_EQ(outcome->summary.guard_violations, 0U);
     for (std::size_t press = 0; press < 2; ++press) {
         const auto later = between(*outcome, pressed_ns[press], INT64_MAX);
         std::size_t until = 0;
-        while (until < later.size() && later[until].sunlight != (press == 1)) ++until;
+        while (until < later.size() && later[until].light.on.sunlight != (press == 1)) ++until;
         ASSERT_LT(until, later.size());
         EXPECT_LE(until, 3U) << "two frames, and the one that was under way";
     }

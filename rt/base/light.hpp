@@ -1,0 +1,58 @@
+// The light of a frame: which parts of it are drawn, and the hour of the day. The table names what a visitor may switch.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+namespace surefoot::rt {
+
+/// Which parts of the light are drawn, where the model has them.
+struct Switches {
+    bool sunlight = true, shadows = true, lamplight = true, haze = true;
+    bool operator==(const Switches&) const = default;
+};
+
+/// So often each was switched since the walk began. The numbers wrap.
+struct SwitchPresses {
+    std::uint32_t sunlight = 0, shadows = 0, lamplight = 0, haze = 0;
+};
+
+/// One switch. Its name is that of the action, of the setting and of the ledger's column.
+struct Switch {
+    std::string_view name;
+    bool Switches::*on;
+    std::uint32_t SwitchPresses::*presses;
+};
+
+/// All of them. To add one: its members above, its row here, and what it hides in tools/walk/light.cpp.
+constexpr std::array<Switch, 4> light_switches = {{
+    {"sunlight", &Switches::sunlight, &SwitchPresses::sunlight},
+    {"shadows", &Switches::shadows, &SwitchPresses::shadows},
+    {"lamplight", &Switches::lamplight, &SwitchPresses::lamplight},
+    {"haze", &Switches::haze, &SwitchPresses::haze},
+}};
+constexpr std::size_t switch_count = light_switches.size();
+
+/// ShownLight::hour where the model's own light is shown.
+constexpr float no_hour = std::numeric_limits<float>::quiet_NaN();
+
+/// The light of one frame.
+struct ShownLight {
+    Switches on;
+    float hour = no_hour;  ///< of the day, from 0 to below 24
+};
+
+inline bool has_hour(const ShownLight& light) { return !std::isnan(light.hour); }
+
+/// What is drawn after so many presses. `at_first`: before the first.
+constexpr Switches switched(const Switches& at_first, const SwitchPresses& presses) {
+    Switches on;
+    for (const Switch& one : light_switches) on.*one.on = at_first.*one.on == (presses.*one.presses % 2 == 0);
+    return on;
+}
+
+}  // namespace surefoot::rt

@@ -1,0 +1,46 @@
+// From switches and the hour to what the renderer draws.
+#include "tools/walk/light.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/model/daylight.hpp"
+
+namespace surefoot::walk {
+
+static_assert(rt::switch_count <= gl::max_switches);
+
+model::EffectMask hidden_effects(const rt::Switches& on) {
+    model::EffectMask hidden = 0;
+    if (!on.sunlight) hidden |= model::effect_sun | model::effect_shadow;
+    if (!on.shadows) hidden |= model::effect_shadow;
+    if (!on.lamplight) hidden |= model::effect_lamps;
+    if (!on.haze) hidden |= model::effect_fog;
+    return hidden;
+}
+
+std::vector<model::EffectMask> switch_groups(const rt::Switches& at_first, bool may_switch, model::EffectMask called_for) {
+    std::vector<model::EffectMask> groups;
+    for (const rt::Switch& one : rt::light_switches) {
+        if (!may_switch && at_first.*one.on) continue;
+        rt::Switches without;
+        without.*one.on = false;
+        const model::EffectMask group = hidden_effects(without) & called_for;
+        if (group != 0 && std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
+    }
+    return groups;
+}
+
+float hour_at(const config::Settings& settings, double walk_s) {
+    if (!(settings.hour >= 0)) return rt::no_hour;
+    constexpr double steps_of_day = 24.0 * hour_steps;
+    const double step = std::round((settings.hour + settings.hour_speed * walk_s / 60) * hour_steps);
+    return static_cast<float>((step - steps_of_day * std::floor(step / steps_of_day)) / hour_steps);
+}
+
+void show_light(Engine& engine, const rt::ShownLight& light) {
+    engine.hide_effects(hidden_effects(light.on));
+    if (rt::has_hour(light)) engine.set_light(model::daylight_at(static_cast<double>(light.hour), engine.model().light));
+}
+
+}  // namespace surefoot::walk
