@@ -143,8 +143,8 @@ void evaluate_button(Binding& b, DeviceOutput& output, const DeviceState& state,
             break;
         case Action::sunlight:
         case Action::shadows:
-        case Action::lamplight:
-        case Action::haze:
+        case Action::lamps:
+        case Action::fog:
             output.request.switched |= edge ? 1U << switch_of(b.action[0]) : 0U;
             break;
         case Action::dead_man:

@@ -11,8 +11,8 @@ namespace surefoot::input {
 namespace {
 
 constexpr std::array<std::string_view, action_count> names = {
-    "none", "forward", "side",     "up",      "turn",      "look", "speed",    "zoom", "next_viewpoint", "reset",
-    "tour", "pause",   "sunlight", "shadows", "lamplight", "haze", "dead_man", "stop", "stop_reset"};
+    "none", "forward", "side",     "up",      "turn",  "look", "speed",    "zoom", "next_viewpoint", "reset",
+    "tour", "pause",   "sunlight", "shadows", "lamps", "fog",  "dead_man", "stop", "stop_reset"};
 
 bool contains_letters(std::string_view text, std::string_view part) {
     const auto same = [](char a, char b) {

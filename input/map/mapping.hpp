@@ -29,8 +29,8 @@ enum class Action : std::uint8_t {
     pause,
     sunlight,
     shadows,
-    lamplight,
-    haze,        // edges, as in MotionRequest; the last four in the order of rt::light_switches
+    lamps,
+    fog,         // edges, as in MotionRequest; the last four in the order of rt::light_switches
     dead_man,    // walks only while held
     stop,        // emergency stop: latched
     stop_reset,  // clears the latch once the stop is no longer asserted
@@ -45,7 +45,7 @@ std::string_view name_of(Action action);
 [[nodiscard]] constexpr std::size_t switch_of(Action a) {
     return static_cast<std::size_t>(a) - static_cast<std::size_t>(Action::sunlight);
 }
-static_assert(switch_of(Action::haze) + 1 == rt::switch_count);
+static_assert(switch_of(Action::fog) + 1 == rt::switch_count);
 /// Whether the action moves the walker. The neutral interlock watches these. Speed and zoom it does not: a throttle keeps its
 /// place.
 [[nodiscard]] constexpr bool moves(Action a) { return a >= Action::forward && a <= Action::look; }

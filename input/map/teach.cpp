@@ -248,10 +248,10 @@ std::string Teach::question() const {
             return "Press the button that switches the sunlight";
         case Action::shadows:
             return "Press the button that switches the shadows";
-        case Action::lamplight:
-            return "Press the button that switches the lamplight";
-        case Action::haze:
-            return "Press the button that switches the haze";
+        case Action::lamps:
+            return "Press the button that switches the lamps";
+        case Action::fog:
+            return "Press the button that switches the fog";
         default:
             return "Press the button that pauses";
     }

@@ -40,8 +40,8 @@ constexpr UsualKey usual_keys[] = {
     {"key-p", Action::pause, 1},
     {"key-l", Action::sunlight, 1},
     {"key-j", Action::shadows, 1},
-    {"key-k", Action::lamplight, 1},
-    {"key-h", Action::haze, 1},
+    {"key-k", Action::lamps, 1},
+    {"key-h", Action::fog, 1},
 };
 
 DeviceMapping usual_mapping(double deg_per_px) {

@@ -49,8 +49,8 @@ struct VertexFill {
     std::vector<std::uint32_t> from;
 };
 
-/// For vertices of a range that lie within other things: by lit triangles that reach out of them, else from the nearest known
-/// vertex within 3 m that looks the same way. Those that have none are left out. unknown: by vertex of the range.
+/// For vertices of a range that lie within other things: by lit triangles that reach out of them. Where none does, the nearest
+/// known vertex within 3 m that looks the same way serves. Those that have none are left out. unknown: by vertex of the range.
 std::vector<VertexFill> vertex_fills(const model::Model& model, const VertexRange& range, const std::vector<bool>& unknown);
 
 }  // namespace surefoot::bake

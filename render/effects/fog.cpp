@@ -5,7 +5,7 @@ namespace surefoot::effects {
 
 constexpr EffectModule fog{
     .bit = model::effect_fog,
-    .name = "fog",
+    .name = "depth_fog",
     .help = "what is far takes the colour of the sky",
     .requested_by = "extras.fog_visibility_m of a glTF scene, or bake --fog",
     .vertex_declarations = "",

@@ -5,7 +5,7 @@ namespace surefoot::effects {
 
 constexpr EffectModule lamps{
     .bit = model::effect_lamps,
-    .name = "lamps",
+    .name = "baked_lamps",
     .help = "light of lamps and of what glows, baked at the vertices",
     .requested_by = "a lamp (KHR_lights_punctual) or an emissive material, in a bake of quality full",
     .vertex_declarations = "in vec3 lamps_before;\nin vec3 lamps_behind;\nuniform float lamp_strength;\n",

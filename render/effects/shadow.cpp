@@ -5,7 +5,7 @@ namespace surefoot::effects {
 
 constexpr EffectModule shadow{
     .bit = model::effect_shadow,
-    .name = "shadow",
+    .name = "baked_shadow",
     .help = "no sun where something hides it, baked at the vertices for the whole day",
     .requested_by = "a mesh in the sun that something hides from it, in a bake of quality full",
     .vertex_declarations = "in vec2 sun_seen;\nuniform float sun_between;\n",

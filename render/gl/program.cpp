@@ -1,6 +1,7 @@
 // Compiling programs and binding their attributes (program.hpp).
 #include "render/gl/program.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <utility>
@@ -176,6 +177,7 @@ void write_light(const Api& gl, const Program& program, const model::Daylight& l
 }
 
 void set_sun_moment(const Api& gl, Program& program, const GeometryBuffers& buffers, std::uint32_t moment) {
+    moment = std::min(moment, model::sun_moments - 1);  // and the one after it
     if (program.sun_moment == moment || buffers.sun_seen == 0) return;
     gl.BindVertexBuffer(sun_seen_binding, buffers.sun_seen, moment, sizeof(model::SunSeen));
     program.sun_moment = moment;

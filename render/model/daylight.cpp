@@ -28,7 +28,7 @@ double half_day_h(double day, double latitude_deg) {
 void set_by_height(Daylight& light) {
     const double height_deg = std::asin(std::clamp(static_cast<double>(light.sun_direction.y), -1.0, 1.0)) / degree;
     const float day = smooth(-8, 12, height_deg), sun = smooth(-1, 12, height_deg), low = 1 - smooth(2, 20, height_deg);
-    const vec3 night_ground(0.09F, 0.095F, 0.12F), night_sky(0.14F, 0.155F, 0.20F);
+    const vec3 night_ground(0.07F, 0.072F, 0.074F), night_sky(0.11F, 0.12F, 0.15F);
     light.sun_light *= sun * vec3(1.0F, 1.0F - 0.25F * low, 1.0F - 0.5F * low);
     light.ground_light = glm::mix(night_ground, light.ground_light, day);
     light.sky_light = glm::mix(night_sky, light.sky_light, day);
@@ -59,7 +59,7 @@ Daylight daylight_of_model(const dvec3& sun_direction, const LightFacts& facts) 
 
 Daylight daylight_at(double hour, const LightFacts& facts) {
     Daylight light;
-    hour -= 24 * std::floor(hour / 24);
+    hour = std::isfinite(hour) ? hour - 24 * std::floor(hour / 24) : 12;
     light.sun_direction = vec3(towards_sun({hour, facts.day, facts.latitude_deg}));
     light.lamp_strength = facts.max_lamp_light;
     set_by_height(light);

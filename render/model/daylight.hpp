@@ -9,7 +9,8 @@
 
 namespace surefoot::model {
 
-/// How much of the sun a vertex sees, shares of 255: from where the model's own sun stands, then at the 15 moments of its day.
+/// How much of the sun a vertex sees, shares of 255. The first is of where the model's own sun stands; 15 moments of its day
+/// follow.
 /// Beside Vertex, only in models that call for effect_shadow.
 struct SunSeen {
     std::uint8_t share[16];
@@ -53,7 +54,7 @@ double hour_of_moment(std::uint32_t moment, double day, double latitude_deg);
 
 /// As the bake saw it: the model's own sun, and lamps off.
 Daylight daylight_of_model(const dvec3& sun_direction, const LightFacts& facts);
-/// At an hour of the facts' day; hours beyond 0..24 come round again.
+/// At an hour of the facts' day; hours beyond 0..24 come round again, and what is no number is noon.
 Daylight daylight_at(double hour, const LightFacts& facts);
 
 }  // namespace surefoot::model

@@ -12,13 +12,13 @@ namespace surefoot::rt {
 
 /// Which parts of the light are drawn, where the model has them.
 struct Switches {
-    bool sunlight = true, shadows = true, lamplight = true, haze = true;
+    bool sunlight = true, shadows = true, lamps = true, fog = true;
     bool operator==(const Switches&) const = default;
 };
 
 /// So often each was switched since the walk began. The numbers wrap.
 struct SwitchPresses {
-    std::uint32_t sunlight = 0, shadows = 0, lamplight = 0, haze = 0;
+    std::uint32_t sunlight = 0, shadows = 0, lamps = 0, fog = 0;
 };
 
 /// One switch. Its name is that of the action, of the setting and of the ledger's column.
@@ -32,8 +32,8 @@ struct Switch {
 constexpr std::array<Switch, 4> light_switches = {{
     {"sunlight", &Switches::sunlight, &SwitchPresses::sunlight},
     {"shadows", &Switches::shadows, &SwitchPresses::shadows},
-    {"lamplight", &Switches::lamplight, &SwitchPresses::lamplight},
-    {"haze", &Switches::haze, &SwitchPresses::haze},
+    {"lamps", &Switches::lamps, &SwitchPresses::lamps},
+    {"fog", &Switches::fog, &SwitchPresses::fog},
 }};
 constexpr std::size_t switch_count = light_switches.size();
 

@@ -148,7 +148,7 @@ TEST(WindowSteering, LSwitchesTheSunlightOnceAPress) {
 }
 
 TEST(WindowSteering, EachKeyOfTheLightSwitchesItsPartAlone) {
-    for (const auto& [key, name] : {std::pair{'l', "sunlight"}, {'j', "shadows"}, {'k', "lamplight"}, {'h', "haze"}}) {
+    for (const auto& [key, name] : {std::pair{'l', "sunlight"}, {'j', "shadows"}, {'k', "lamps"}, {'h', "fog"}}) {
         for (const bool mapped : {false, true}) {
             WindowRig rig(mapped ? "[[device]]\nproduct_name = \"window\"\n[[device.button]]\ncontrol = \"key-p\"\naction = \"" +
                                        std::string(name) + "\"\n"

@@ -60,7 +60,7 @@ TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     EXPECT_EQ(miss["input_reports"], "17");
     EXPECT_EQ(miss["stopped"], "1");
     EXPECT_EQ(miss["cut_hash"], "0000000000001235");
-    EXPECT_EQ(miss["sunlight"] + miss["shadows"] + miss["lamplight"] + miss["haze"], "1010");
+    EXPECT_EQ(miss["sunlight"] + miss["shadows"] + miss["lamps"] + miss["fog"], "1010");
     EXPECT_EQ(miss["hour"], "17.5000");
     const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), "hour") - names.begin());
     EXPECT_EQ(test::split(lines[1], ',').at(at), "") << "the model's own light";

@@ -30,8 +30,8 @@ TEST(Light, EachSwitchHidesItsEffectsAndSunlightItsShadows) {
     EXPECT_EQ(hidden_effects({}), 0U);
     EXPECT_EQ(hidden(&rt::Switches::sunlight), sun | shadow);
     EXPECT_EQ(hidden(&rt::Switches::shadows), shadow);
-    EXPECT_EQ(hidden(&rt::Switches::lamplight), lamps);
-    EXPECT_EQ(hidden(&rt::Switches::haze), fog);
+    EXPECT_EQ(hidden(&rt::Switches::lamps), lamps);
+    EXPECT_EQ(hidden(&rt::Switches::fog), fog);
     EXPECT_EQ(hidden_effects({false, false, false, false}), sun | shadow | lamps | fog);
 }
 
@@ -56,9 +56,9 @@ TEST(Light, GroupsAreOfTheModelsEffectsAndOfWhatMaySwitch) {
     EXPECT_EQ(switch_groups({}, true, others | shadow), (Groups{shadow})) << "one for two switches";
     EXPECT_EQ(switch_groups({}, true, others), Groups{}) << "a model without an effect compiles nothing for it";
     EXPECT_EQ(switch_groups({}, false, others | sun | shadow | lamps | fog), Groups{}) << "nobody may switch";
-    const rt::Switches no_haze{true, true, true, false};
-    EXPECT_EQ(switch_groups(no_haze, false, others | sun | fog), (Groups{fog})) << "off at first";
-    EXPECT_EQ(switch_groups(no_haze, false, others | sun), Groups{});
+    const rt::Switches no_fog{true, true, true, false};
+    EXPECT_EQ(switch_groups(no_fog, false, others | sun | fog), (Groups{fog})) << "off at first";
+    EXPECT_EQ(switch_groups(no_fog, false, others | sun), Groups{});
     EXPECT_EQ(switch_groups({false, true, true, true}, false, sun | shadow), (Groups{sun | shadow}));
 }
 
@@ -226,19 +226,19 @@ TEST_F(LightWalk, WithoutAnHourTheModelsOwnLightStays) {
     EXPECT_NE(picture(), shown) << "the test would see another light";
 }
 
-TEST_F(LightWalk, AWalkThatBeginsWithoutHazeShowsNone) {
+TEST_F(LightWalk, AWalkThatBeginsWithoutFogShowsNone) {
     const auto shown = [&] {
         frame(0);
         return picture();
     };
     if (!open()) GTEST_SKIP() << "no GL";
     const Pixels with = shown();
-    request_.haze = false;
+    request_.fog = false;
     stages_.reset();
     ASSERT_TRUE(open());
     const Pixels without = shown();
     EXPECT_NE(with, without);
-    EXPECT_FALSE(snapshots_->snapshots()[0].light.on.haze);
+    EXPECT_FALSE(snapshots_->snapshots()[0].light.on.fog);
     EXPECT_EQ(render_snapshot(*engine_, snapshots_->snapshots()[0])->full, without);
 }
 

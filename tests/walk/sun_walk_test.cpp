@@ -49,7 +49,7 @@ TEST(SunWalk, ADeviceSwitchesEachPartOfTheLightByItself) {
     walk::WalkRequest request = test::steered_request(session, "switches");
     request.steering_file = test::Forest::get().dir + "/switches.toml";
     ASSERT_TRUE(write_text(request.steering_file, switching_pad()).ok());
-    request.haze = false;
+    request.fog = false;
     const walk::WalkOutcome outcome = test::walk(request);
     EXPECT_EQ(test::at(outcome, 0.15).light.on, (rt::Switches{true, true, true, false}));
     EXPECT_EQ(test::at(outcome, 0.55).light.on, (rt::Switches{false, true, true, false}));
@@ -59,7 +59,7 @@ TEST(SunWalk, ADeviceSwitchesEachPartOfTheLightByItself) {
     EXPECT_EQ(outcome.records.back().light.on, (rt::Switches{false, false, true, true})) << "and on again";
     const auto json = nlohmann::json::parse(report::to_json(outcome.summary));
     for (const auto& [key, presses] :
-         {std::pair{"sunlight_presses", 1}, {"shadows_presses", 1}, {"lamplight_presses", 2}, {"haze_presses", 1}})
+         {std::pair{"sunlight_presses", 1}, {"shadows_presses", 1}, {"lamps_presses", 2}, {"fog_presses", 1}})
         EXPECT_EQ(json["input"][key], presses) << key;
     for (const rt::FrameRecord& r : outcome.records) EXPECT_EQ(r.guard_violations, 0U);
     EXPECT_EQ(outcome.summary.input.guard_violations, 0U);

@@ -164,8 +164,8 @@ void add_light(CLI::App* c, const std::shared_ptr<SettingArguments>& a) {
     constexpr std::array<const char*, rt::switch_count> without = {
         "Colours as they are, without sun and sky light; key L of a window switches it, and the action sunlight of any device",
         "The sun everywhere, as if nothing hid it; switched by key J and the action shadows",
-        "No light of any lamp, nor of what glows; switched by key K and the action lamplight",
-        "What is far keeps its colours; switched by key H and the action haze",
+        "No light of any lamp, nor of what glows; switched by key K and the action lamps",
+        "What is far keeps its colours; switched by key H and the action fog",
     };
     for (std::size_t i = 0; i < without.size(); ++i)
         c->add_flag(fmt::format("--no-{}", rt::light_switches[i].name), a->no_light[i], without[i]);
@@ -235,7 +235,7 @@ void add_walk(CLI::App& app, Context& context) {
         "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
         "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)\n\n"
         "In a window, W A S D or the arrow keys walk, and Shift runs. E and Q or Page Up and Down fly up and down.\n"
-        "Z looks closer, as through binoculars, and X back. L, J, K and H switch sunlight, shadows, lamplight and haze.\n"
+        "Z looks closer, as through binoculars, and X back. L, J, K and H switch sunlight, shadows, lamps and fog.\n"
         "Drag with the left mouse button to look around, or press the right one to capture the pointer. T follows the\n"
         "path, N goes to the next viewpoint, Home back to the start, and P pauses. F11 fills the screen. Escape releases\n"
         "a captured pointer, else it ends the walk with all figures and exit code 0, as closing the window does.\n"

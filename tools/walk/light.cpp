@@ -14,8 +14,8 @@ model::EffectMask hidden_effects(const rt::Switches& on) {
     model::EffectMask hidden = 0;
     if (!on.sunlight) hidden |= model::effect_sun | model::effect_shadow;
     if (!on.shadows) hidden |= model::effect_shadow;
-    if (!on.lamplight) hidden |= model::effect_lamps;
-    if (!on.haze) hidden |= model::effect_fog;
+    if (!on.lamps) hidden |= model::effect_lamps;
+    if (!on.fog) hidden |= model::effect_fog;
     return hidden;
 }
 
