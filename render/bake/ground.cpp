@@ -63,6 +63,20 @@ public:
         if (go_) classify_solids(false);
         return go_;
     }
+    /// What shades without being solid: masks, and solid parts smaller than a foot. False: stopped.
+    bool run_leaves() {
+        if (!run_opaque()) return false;
+        for_all(scene_.nodes.size(), [&](std::size_t n) {
+            const importer::Node& node = scene_.nodes[n];
+            if (!is_placed(scene_, node)) return;
+            std::size_t t = 0;
+            for (const importer::Primitive& p : scene_.meshes[node.mesh].primitives) {
+                const bool clear = scene_.materials[p.material].alpha == model::AlphaMode::blend;
+                for (std::size_t i = 0; i < p.indices.size() / 3; ++i, ++t) blocking_[n][t] = !blocking_[n][t] && !clear;
+            }
+        });
+        return true;
+    }
     [[nodiscard]] model::Ground trees();
     [[nodiscard]] BlockingTriangles& blocking() { return blocking_; }
 
@@ -216,6 +230,11 @@ model::Ground make_ground(const importer::Scene& scene, const Progress& progress
 model::Ground make_opaque_ground(const importer::Scene& scene, const Progress& progress) {
     GroundMaker maker(scene, progress);
     return maker.run_opaque() ? maker.trees() : model::Ground{};
+}
+
+model::Ground make_leaf_ground(const importer::Scene& scene, const Progress& progress) {
+    GroundMaker maker(scene, progress);
+    return maker.run_leaves() ? maker.trees() : model::Ground{};
 }
 
 std::vector<std::string> ground_warnings(const model::Ground& ground, const Box& all) {

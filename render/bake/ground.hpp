@@ -19,6 +19,8 @@ model::Ground make_ground(const importer::Scene& scene, const Progress& progress
 /// The opaque triangles of all placed nodes, whatever stops a walker: what hides the sky. Glass and cut-out cards are left out,
 /// and so are parts smaller than a foot. As make_ground() else.
 model::Ground make_opaque_ground(const importer::Scene& scene, const Progress& progress);
+/// What shades besides: leaves, cards and wires cut out by masks, and solid parts smaller than a foot. Glass does not.
+model::Ground make_leaf_ground(const importer::Scene& scene, const Progress& progress);
 
 /// Guesses that a person should know of: no floor, or a size at which nobody can walk. One line each. `all`: the model's box.
 std::vector<std::string> ground_warnings(const model::Ground& ground, const Box& all);

@@ -9,10 +9,10 @@ constexpr EffectModule openness{
     .name = "openness",
     .help = "no sun where no sky is seen, and shade in corners, baked at the vertices",
     .requested_by = "a lit mesh that something hides from the sky, in a bake of quality full",
-    .vertex_declarations = "in vec4 hidden;\n",
+    .vertex_declarations = "in vec4 hidden;\nuniform float room_light;\n",
     .vertex_code =
         "    vec2 seen = 1.0 - (turned ? hidden.yw : hidden.xz);\n"
-        "    vec3 room = vec3(0.98, 0.95, 0.91) + (0.06 * n.x + 0.12 * n.y - 0.04 * n.z);\n"
+        "    vec3 room = room_light * (vec3(0.98, 0.95, 0.91) + (0.06 * n.x + 0.12 * n.y - 0.04 * n.z));\n"
         "    lit = mix(room, lit, min(1.0, 4.0 * seen.x)) * (0.6 + 0.4 * seen.y);\n",
     .fragment_declarations = "",
     .fragment_code = "",

@@ -58,6 +58,7 @@ constexpr std::array<LightUniform, light_uniforms> uniforms_of_light{{
     {"sky_light", offsetof(model::Daylight, sky_light), 3},
     {"sun_between", offsetof(model::Daylight, sun_between), 1},
     {"lamp_strength", offsetof(model::Daylight, lamp_strength), 1},
+    {"room_light", offsetof(model::Daylight, room_light), 1},
     {"fog_density", offsetof(model::Daylight, fog_density), 1},
     {"fog_colour", offsetof(model::Daylight, background), 3},
 }};

@@ -23,7 +23,7 @@ struct Instance {
 static_assert(sizeof(Instance) == 64);
 
 /// Uniforms of a moment's light.
-constexpr std::size_t light_uniforms = 8;
+constexpr std::size_t light_uniforms = 9;
 
 /// A linked program for one set of effects, with the places of its uniforms.
 struct Program {

@@ -104,9 +104,9 @@ struct Scene {
     std::vector<Material> materials;  ///< at least one
     std::vector<image::Image> images;
     std::vector<StandIn> stand_ins;
-    std::optional<Sun> sun;   ///< the brightest one
+    std::optional<Sun> sun;       ///< the brightest one
     double fog_visibility_m = 0;  ///< extras.fog_visibility_m of the glTF scene; 0: no fog
-    std::vector<Lamp> lamps;  ///< the brightest max_lamps, in the file's order
+    std::vector<Lamp> lamps;      ///< the brightest max_lamps, in the file's order
     std::vector<std::string> sources;
     std::vector<std::string> warnings;              ///< repaired or dropped data, one line each with counts
     std::vector<Damage> damage;                     ///< warnings about drawn things, which a person should repair

@@ -34,6 +34,7 @@ void set_by_height(Daylight& light) {
     light.sky_light = glm::mix(night_sky, light.sky_light, day);
     light.background = glm::mix(vec3(0.05F, 0.06F, 0.1F), vec3(1.0F), day);
     light.lamp_strength *= 1 - smooth(-3, 6, height_deg);
+    light.room_light = glm::mix(light.room_light, 1.0F, day);
     const Daylight noon;
     light.pictures =
         (light.sky_light + light.ground_light + light.sun_light) / (noon.sky_light + noon.ground_light + noon.sun_light);
@@ -62,6 +63,7 @@ Daylight daylight_at(double hour, const LightFacts& facts) {
     hour = std::isfinite(hour) ? hour - 24 * std::floor(hour / 24) : 12;
     light.sun_direction = vec3(towards_sun({hour, facts.day, facts.latitude_deg}));
     light.lamp_strength = facts.max_lamp_light;
+    light.room_light = facts.night_room_light;
     set_by_height(light);
     const double half = half_day_h(facts.day, facts.latitude_deg);
     const double at = std::clamp((hour - 12) / half + 1, 0.0, 2.0) * 0.5 * (sun_moments - 1);

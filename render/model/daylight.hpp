@@ -29,6 +29,7 @@ struct LightFacts {
     double day = 172, latitude_deg = 50;  ///< of the moments of SunSeen, and of every hour that a walk shows
     float max_lamp_light = 1;             ///< of all vertices
     float fog_visibility_m = 0;           ///< a black thing so far away has 5 % of its contrast; 0: no fog
+    float night_room_light = 1;           ///< Daylight::room_light by night; less where a scene's own lamps light its rooms
     bool operator==(const LightFacts&) const = default;
 };
 
@@ -40,6 +41,7 @@ struct Daylight {
     vec3 sky_light{0.52F, 0.56F, 0.62F};     ///< on what faces the sky
     float sun_between = 0;                   ///< 0..1, from the first to the second of two moments of SunSeen
     float lamp_strength = 0;                 ///< of LampLight; 0: they are off
+    float room_light = 1;                    ///< of the light of rooms that see no sky
     float fog_density = 0;                   ///< light falls to 2^-(density * distance in m)
     vec3 background{1.0F};                   ///< factor of the colour behind everything, which is the fog's as well
     vec3 pictures{1.0F};                     ///< factor of what was captured in the light of the bake

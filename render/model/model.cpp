@@ -220,6 +220,7 @@ Check check_light(const Model& m) {
     const LightFacts& l = m.light;
     if (!(l.day >= 1 && l.day <= 366) || !(std::abs(l.latitude_deg) <= 90)) return wrong_light("The sun's day or place is wrong");
     if (!(l.max_lamp_light > 0 && l.max_lamp_light <= 1e4F)) return wrong_light("The lamps' light is out of range");
+    if (!(l.night_room_light >= 0 && l.night_room_light <= 1)) return wrong_light("The light of rooms at night is out of range");
     if (!(l.fog_visibility_m >= 0 && l.fog_visibility_m <= 1e7F)) return wrong_light("The fog is out of range");
     return {};
 }

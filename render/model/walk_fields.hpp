@@ -115,7 +115,9 @@ void fields(Archive& a, SpreadT& s) {
 
 template <class Archive, class LightT>
 requires std::is_same_v<std::remove_const_t<LightT>, LightFacts>
-void fields(Archive& a, LightT& l) { a(l.day), a(l.latitude_deg), a(l.max_lamp_light), a(l.fog_visibility_m); }
+void fields(Archive& a, LightT& l) {
+    a(l.day), a(l.latitude_deg), a(l.max_lamp_light), a(l.fog_visibility_m), a(l.night_room_light);
+}
 
 template <class Archive, class PartT>
 requires std::is_same_v<std::remove_const_t<PartT>, Part>

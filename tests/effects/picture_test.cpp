@@ -91,6 +91,7 @@ reference::Light evening() {
     light.moment = 3;
     light.between = 0.3;
     light.lamps = 1.7;
+    light.rooms = 0.7;
     light.fog_density = 0.11;
     light.background = {0.5, 0.4, 0.65};
     light.pictures = {0.83, 0.66, 0.71};
@@ -106,6 +107,7 @@ model::Daylight for_device(const reference::Light& light) {
     out.sun_moment = light.moment;
     out.sun_between = static_cast<float>(light.between);
     out.lamp_strength = static_cast<float>(light.lamps);
+    out.room_light = static_cast<float>(light.rooms);
     out.fog_density = static_cast<float>(light.fog_density);
     out.background = vec3(light.background);
     out.pictures = vec3(light.pictures);
@@ -233,6 +235,7 @@ TEST_P(Pictures, differ_from_the_reference_where_the_light_is_another_in_one_num
         {"moment", [](auto& l) { l.moment = 4; }},
         {"between", [](auto& l) { l.between = 0.7; }},
         {"lamps", [](auto& l) { l.lamps = 1.5; }},
+        {"rooms", [](auto& l) { l.rooms = 0.5; }},
         {"fog", [](auto& l) { l.fog_density = 0.09; }},
         {"background", [](auto& l) { l.background.r += 0.1; }},
         {"pictures", [](auto& l) { l.pictures.g += 0.1; }},

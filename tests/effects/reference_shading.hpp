@@ -20,6 +20,7 @@ struct Light {
     std::uint32_t moment = 0;  ///< it is between this share of the sun and the next
     double between = 0;        ///< 0: at this one, 1: at the next
     double lamps = 0;          ///< light of a lamp's full byte
+    double rooms = 1;          ///< of the light of a room that sees no sky
     double fog_density = 0;    ///< at a distance of 1 / density, half is left
     dvec3 background{1.0};     ///< multiplies the sky, which is the fog's colour too
     dvec3 pictures{1.0};       ///< multiplies what was captured by the light of the bake
@@ -81,7 +82,7 @@ inline dvec3 light_at_vertex(const View& view, const model::Material& material, 
     if (has(material, model::effect_openness)) {  // a quarter of the sky is enough for all of the light outside
         const dvec3 of_room = dvec3(0.98, 0.95, 0.91) + dvec3(0.06 * n.x + 0.12 * n.y - 0.04 * n.z);
         const double outside = std::min(1.0, 4.0 * side.sky);
-        light = (1.0 - outside) * of_room + outside * light;
+        light = (1.0 - outside) * view.light.rooms * of_room + outside * light;
         light *= 0.6 + 0.4 * side.room;
     }
     if (has(material, model::effect_lamps)) light += side.lamps;  // they are near: neither sky nor corners change them

@@ -35,7 +35,7 @@ std::vector<double> numbers_of(const Daylight& light) {
     for (const vec3* v :
          {&light.sun_direction, &light.sun_light, &light.ground_light, &light.sky_light, &light.background, &light.pictures})
         for (int i = 0; i < 3; ++i) all.push_back((*v)[i]);
-    all.insert(all.end(), {light.sun_between, light.lamp_strength, light.fog_density});
+    all.insert(all.end(), {light.sun_between, light.lamp_strength, light.room_light, light.fog_density});
     return all;
 }
 
@@ -58,6 +58,11 @@ TEST(Daylight, AtMidnightIsDarkAndHasItsLamps) {
     const Daylight night = daylight_at(0, facts_of(places[0])), usual;
     EXPECT_EQ(night.sun_light, vec3(0));
     EXPECT_EQ(night.lamp_strength, 3);
+    LightFacts with_lamps = facts_of(places[0]);
+    with_lamps.night_room_light = 0.4F;
+    EXPECT_EQ(night.room_light, 1) << "rooms have a light of their own";
+    EXPECT_EQ(daylight_at(0, with_lamps).room_light, 0.4F);
+    EXPECT_EQ(daylight_at(12, with_lamps).room_light, 1);
     for (int i = 0; i < 3; ++i) {
         EXPECT_LT(night.sky_light[i], 0.25F * usual.sky_light[i]);
         EXPECT_LT(night.ground_light[i], 0.25F * usual.ground_light[i]);

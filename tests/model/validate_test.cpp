@@ -109,6 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"NanLamps", "light", [](Model& m) { m.light.max_lamp_light = nan; }},
                     Wrong{"NoLampLight", "light", [](Model& m) { m.light.max_lamp_light = 0; }},
                     Wrong{"EndlessLamps", "light", [](Model& m) { m.light.max_lamp_light = INFINITY; }},
+                    Wrong{"NegativeRoomLight", "light", [](Model& m) { m.light.night_room_light = -0.1F; }},
+                    Wrong{"NanRoomLight", "light", [](Model& m) { m.light.night_room_light = nan; }},
                     Wrong{"NanFog", "light", [](Model& m) { m.light.fog_visibility_m = nan; }},
                     Wrong{"NegativeFog", "light", [](Model& m) { m.light.fog_visibility_m = -1; }},
                     Wrong{"SunNotUnit", "sun_direction", [](Model& m) { m.sun_direction = dvec3(0.0); }}),

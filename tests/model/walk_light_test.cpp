@@ -93,7 +93,7 @@ TEST_F(WalkLight, TakesNoByteOfAFileThatHasNone) {
     std::memcpy(&sections, before.data() + 12, sizeof(sections));
     EXPECT_EQ(sections, 9U) << "those of the oldest files, and no other";
     model.light.fog_visibility_m = 100;
-    EXPECT_EQ(bytes_of_file(&with_facts), bytes + 20 + 8 + 8 + 4 + 4) << "an entry of the table, and the facts";
+    EXPECT_EQ(bytes_of_file(&with_facts), bytes + 20 + 8 + 8 + 4 + 4 + 4) << "an entry of the table, and the facts";
     model.light = {};
     fill(model.vertices.size());
     EXPECT_GT(bytes_of_file(&with_shares), bytes);
