@@ -128,10 +128,10 @@ std::string called_for(const EffectReport& r) {
 std::string body_of(const EffectReport& r) {
     std::string out = "<header>\n<p class=\"brand\"><b>Surefoot</b> effects</p>\n<h1>What each effect costs and shows</h1>\n";
     out += fmt::format(
-        "<p class=\"lead\"><b>{}</b> along <b>{}</b>: full detail at {} places, {}×{} pixels, on {}.</p>\n</header>\n",
+        "<p class=\"lead\"><b>{}</b> along <b>{}</b>: full detail at {} places, {}×{} pixels, on {}{}.</p>\n</header>\n",
         report::escaped(std::filesystem::path(r.model).filename().string()),
         report::escaped(std::filesystem::path(r.path).filename().string()), r.poses, r.width, r.height,
-        report::escaped(r.renderer));
+        report::escaped(r.renderer), r.hour < 0 ? "" : fmt::format(", in the light of {:.4g} h", r.hour));
     if (!r.uncalibrated.empty()) out += fmt::format("<p class=\"sub\">{}</p>\n", report::escaped(r.uncalibrated));
     out += called_for(r) + three_ways(r.ways);
     out +=
@@ -205,17 +205,12 @@ std::string effects_json(const EffectReport& r) {
                            {"walked_triangles_share", e.walked_triangles_share},
                            {"where", json_of(e.where)},
                            {"worth", e.shown_at > 0 ? json_of(e.worth) : Json(nullptr)}});
-    const Json json = {{"model", r.model},
-                       {"path", r.path},
-                       {"renderer", r.renderer},
-                       {"machine", r.machine},
-                       {"width", r.width},
-                       {"height", r.height},
-                       {"poses", r.poses},
-                       {"use_frames", r.use_frames},
-                       {"walked_rate_hz", walked_rate_hz},
-                       {"effects", effects},
-                       {"bare", json_of(r.bare)},
+    const Json json = {{"model", r.model},           {"path", r.path},
+                       {"renderer", r.renderer},     {"machine", r.machine},
+                       {"width", r.width},           {"height", r.height},
+                       {"poses", r.poses},           {"hour", r.hour < 0 ? Json(nullptr) : Json(r.hour)},
+                       {"use_frames", r.use_frames}, {"walked_rate_hz", walked_rate_hz},
+                       {"effects", effects},         {"bare", json_of(r.bare)},
                        {"ways", json_of(r.ways)}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -144,6 +144,7 @@ Result<EffectReport> measure_effects(const PlacesRequest& request, const Progres
     report.width = request.width;
     report.height = request.height;
     report.poses = request.poses;
+    report.hour = request.hour;
     const std::vector<Pose> poses = poses_along(chosen->path, request.poses);
     progress.update("frames in use", 0);
     auto use = measure_whole(request, chosen->path, poses, progress, report);

@@ -36,6 +36,7 @@ struct EffectWorth {
 struct EffectReport {
     std::string model, path, renderer, machine, uncalibrated;
     std::uint32_t width = 0, height = 0, poses = 0;
+    double hour = -1;                  ///< of the day; below 0: the model's own light
     std::vector<EffectWorth> effects;  ///< all, in the order of application
     std::uint32_t use_frames = 0;      ///< of the shares of frames
     ThreeWays ways;

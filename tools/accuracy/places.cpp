@@ -33,6 +33,7 @@ Result<PlacesEngine> open_engine_of_places(const PlacesRequest& request, model::
     if (!engine) return engine.error();
     PlacesEngine out;
     out.engine = std::move(*engine);
+    if (request.hour >= 0) out.engine->set_light(model::daylight_at(request.hour, out.engine->model().light));
     out.machine = measure::machine_identity(out.engine->device().renderer(), request.rasterisers);
     out.uncalibrated = note;
     return out;

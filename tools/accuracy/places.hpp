@@ -23,6 +23,7 @@ struct PlacesRequest {
     int workers = 0, rasterisers = 0;
     double lift_m = 0;
     double shift_x = 0, shift_y = 0;  ///< off axis, as model::Viewport has it
+    double hour = -1;                 ///< of the day; below 0: the model's own light
 
     [[nodiscard]] model::Viewport viewport() const { return {width, height, shift_x, shift_y}; }
 };
