@@ -16,9 +16,11 @@ namespace surefoot::bake {
 namespace {
 
 constexpr std::size_t moments = sizeof(model::SunSeen);
-constexpr double min_sun_height = 0.02;  // of the direction: a sun on the horizon is hidden by all ground
-constexpr float max_glow = 16;           // of what glows on a dark surface
-constexpr float min_base = 0.05F;        // of a colour that a glow is divided by
+constexpr double min_sun_height = 0.02;     // of the direction: a sun on the horizon is hidden by all ground
+constexpr double through_leaves = 1.0 / 3;  // of the sun: some rays pass between them
+constexpr float night_room_light = 0.4F;    // of rooms in a scene whose lamps are known
+constexpr float max_glow = 16;              // of what glows on a dark surface
+constexpr float min_base = 0.05F;           // of a colour that a glow is divided by
 constexpr model::EffectMask has_light = model::effect_sun | model::effect_openness;
 
 model::SunSeen seen_always() {
@@ -103,7 +105,8 @@ void LightMaker::add_sun(const PlacedStart& from, bool two_sided, std::array<dou
             continue;
         }
         const dvec3 at = from.at + (faces < 0 ? -ray_lift_m : ray_lift_m) * from.normal;
-        if (!input_.opaque.is_blocked({at, directions_[m], far_m_})) seen[m] += 1;
+        if (input_.opaque.is_blocked({at, directions_[m], far_m_})) continue;
+        seen[m] += input_.leaves.is_blocked({at, directions_[m], far_m_}) ? through_leaves : 1;
     }
 }
 
@@ -221,6 +224,7 @@ void LightMaker::put_lamps(BakedLight& found) {
     }
     if (found.lit == 0) return;
     model_.light.max_lamp_light = max_light;
+    model_.light.night_room_light = night_room_light;
     model_.lamp_light.assign(model_.vertices.size(), model::LampLight{});
     const auto byte = [&](float light) { return static_cast<std::uint8_t>(std::lround(255 * std::sqrt(light / max_light))); };
     for (std::size_t r = 0; r < ranges_.size(); ++r)

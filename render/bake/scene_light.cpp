@@ -24,13 +24,13 @@ std::vector<vec3> emission_of(const importer::Scene& scene, const model::Model& 
 }  // namespace
 
 std::unique_ptr<LightRays> make_light_rays(const importer::Scene& scene, const Progress& progress) {
-    return std::make_unique<LightRays>(make_opaque_ground(scene, progress), scene);
+    return std::make_unique<LightRays>(make_opaque_ground(scene, progress), make_leaf_ground(scene, progress), scene);
 }
 
 RefinedMeshes refine_scene(const importer::Scene& scene, const model::Model& model, const LightRays& rays,
                            const Progress& progress) {
     Stage stage(progress, "cutting for light", 1);
-    const RefineLight light{glm::normalize(model.sun_direction), model.light, &rays.opaque, &rays.lamps};
+    const RefineLight light{glm::normalize(model.sun_direction), model.light, &rays.opaque, &rays.lamps, &rays.leaves};
     RefinedMeshes refined = refine_for_light(scene, light, on_all_cores, [&] { return progress.stopped(); });
     stage.step();
     return refined;
@@ -46,8 +46,8 @@ std::optional<SceneLight> measure_scene_light(const importer::Scene& scene, cons
     if (progress.stopped()) return {};
     const std::vector<vec3> emission = emission_of(scene, model, found.openness);
     Stage stage(progress, "shadows", baked_light_steps(model));
-    found.baked = measure_baked_light(model, {rays.lamps, emission, found.openness.within, rays.opaque}, on_all_cores,
-                                      [&] { return stage.step(); });
+    found.baked = measure_baked_light(model, {rays.lamps, emission, found.openness.within, rays.opaque, rays.leaves},
+                                      on_all_cores, [&] { return stage.step(); });
     if (progress.stopped()) return {};
     return found;
 }

@@ -22,11 +22,12 @@ struct SceneLight {
 
 /// What is opaque in a scene, and its lamps: ready for rays.
 struct LightRays {
-    model::Ground ground;
-    RayTree opaque{ground};
+    model::Ground ground, leaf_ground;
+    RayTree opaque{ground}, leaves{leaf_ground};
     LampField lamps;
 
-    LightRays(model::Ground of, const importer::Scene& scene) : ground(std::move(of)), lamps(scene.lamps, opaque) {}
+    LightRays(model::Ground solid, model::Ground leafy, const importer::Scene& scene)
+        : ground(std::move(solid)), leaf_ground(std::move(leafy)), lamps(scene.lamps, opaque) {}
     LightRays(const LightRays&) = delete;
     LightRays& operator=(const LightRays&) = delete;
     ~LightRays() = default;
