@@ -75,6 +75,8 @@ void append(Scene& to, Scene&& from) {
     move_all(to.images, from.images);
     move_all(to.stand_ins, from.stand_ins);
     if (from.sun && (!to.sun || from.sun->intensity > to.sun->intensity)) to.sun = std::move(from.sun);
+    if (from.fog_visibility_m > 0 && !(to.fog_visibility_m > 0 && to.fog_visibility_m < from.fog_visibility_m))
+        to.fog_visibility_m = from.fog_visibility_m;
     move_all(to.lamps, from.lamps);
     keep_brightest(to);
     move_all(to.sources, from.sources);

@@ -114,7 +114,8 @@ struct Scene {
     [[nodiscard]] std::uint64_t triangles() const;  ///< instances counted each
 };
 
-/// Adds all of one scene to another. Of more than max_lamps lamps the brightest stay; a warning counts the others.
+/// Adds all of one scene to another. Of more than max_lamps lamps the brightest stay; a warning counts the others. Of two suns
+/// the brighter one stays, and of two fogs the thicker one.
 void append(Scene& to, Scene&& from);
 
 /// By ending (formats.hpp), with the stand-ins listed beside each file (stand_ins.hpp). Several files become one scene.

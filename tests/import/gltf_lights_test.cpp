@@ -339,5 +339,41 @@ TEST(GltfEmission, WhatAnImageSpreadsIsLeftOutAndNamedOnce) {
     EXPECT_TRUE(scene.damage.empty());
 }
 
+/// Of a scene whose extras are these.
+Scene with_extras(const std::string& extras) {
+    TriangleGltf gltf;
+    gltf.scenes = R"([{"nodes":[0],"extras":)" + extras + "}]";
+    return import_good(gltf);
+}
+
+TEST(GltfFog, IsTheScenesExtraIfThatIsANumberOfMetres) {
+    EXPECT_EQ(import_good({}).fog_visibility_m, 0);
+    EXPECT_EQ(with_extras(R"({"fog_visibility_m":120.5})").fog_visibility_m, 120.5);
+    EXPECT_EQ(with_extras(R"({"fog_visibility_m":90})").fog_visibility_m, 90);
+    EXPECT_TRUE(with_extras(R"({"fog_visibility_m":0})").warnings.empty());
+    EXPECT_TRUE(with_extras(R"({"author":"me"})").warnings.empty());
+    EXPECT_TRUE(with_extras(R"("foggy")").warnings.empty()) << "no object";
+    for (const char* wrong : {R"("thick")", "-5", "1e9", "true", "[100]"}) {
+        const Scene scene = with_extras(R"({"fog_visibility_m":)" + std::string(wrong) + "}");
+        EXPECT_EQ(scene.fog_visibility_m, 0) << wrong;
+        EXPECT_TRUE(warns(scene, "Scene: the extra 'fog_visibility_m' is no number of 0 to 1e7 metres; there is no fog"))
+            << wrong;
+        EXPECT_TRUE(scene.damage.empty());
+    }
+}
+
+TEST(GltfFog, OfSeveralFilesTheThickestStays) {
+    for (const bool thick_first : {true, false}) {
+        Scene all, thick, thin;
+        thick.fog_visibility_m = 50;
+        thin.fog_visibility_m = 500;
+        append(all, Scene{});
+        append(all, Scene(thick_first ? thick : thin));
+        append(all, Scene(thick_first ? thin : thick));
+        append(all, Scene{});
+        EXPECT_EQ(all.fog_visibility_m, 50);
+    }
+}
+
 }  // namespace
 }  // namespace surefoot::importer::test
