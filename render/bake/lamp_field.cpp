@@ -67,8 +67,9 @@ dvec3 LampField::lux_of(const ReachingLamp& from, const dvec3& at, const dvec3& 
 dvec3 LampField::lux_at(const dvec3& at, const dvec3& normal) const {
     dvec3 sum(0);
     const dvec3 from = at + ray_lift_m * normal;
+    if (!std::isfinite(from.x + from.y + from.z)) return sum;
     for (const std::uint32_t i : far_reaching_) sum += lux_of(lamps_[i], from, normal);
-    const auto cell = by_cell_.find(key_of(cell_of(at.x), cell_of(at.y), cell_of(at.z)));
+    const auto cell = by_cell_.find(key_of(cell_of(from.x), cell_of(from.y), cell_of(from.z)));
     if (cell == by_cell_.end()) return sum;
     for (const std::uint32_t i : cell->second) sum += lux_of(lamps_[i], from, normal);
     return sum;
