@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <map>
+#include <set>
 #include <span>
-#include <tuple>
 #include <unordered_set>
 #include <utility>
 
 #include "render/bake/lit_vertices.hpp"
+#include "render/bake/objects.hpp"
 #include "render/model/sun_time.hpp"
 #include "rt/base/hash.hpp"
 
@@ -24,7 +24,7 @@ constexpr double max_round_m = 64, min_round_m = 1;  // edges of at least so muc
 constexpr float max_off = 0.12F;                     // of light: between the mean of the ends and what is there
 constexpr std::size_t sun_rays = 6;
 constexpr std::uint64_t min_added = 20'000;
-constexpr int rounds_of_keys = 3;  // a mesh that stands twice passes its cuts on
+constexpr double key_slack_m = 0.02;  // edges of one key differ less in length
 
 /// Shares of the sun's light at some moments, and the lamps' light.
 using LightSample = std::array<float, sun_rays + 1>;
@@ -32,26 +32,76 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;  ///< the lesser vertex fi
 
 Edge edge_of(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
+/// What earlier rounds found of a primitive in one place. Cuts only add vertices, so it stays right.
+struct KnownLight {
+    std::map<std::uint32_t, LightSample> at_vertex;
+    std::map<Edge, bool> changes;
+    std::set<std::array<std::uint32_t, 3>> even;  ///< triangles without changes inside
+};
+
 /// A mesh that may be cut, and where it stands.
 struct CutMesh {
     std::size_t mesh = 0;
     importer::Mesh cut;
     std::vector<dmat4> places;
+    double longest_m = 0;                  ///< no edge is longer, wherever it stands
     std::vector<std::vector<Edge>> edges;  ///< by primitive: to be cut in this round, sorted
+    std::vector<KnownLight> known;         ///< by primitive, and in it by place
 };
 
-std::uint64_t key_of(const dvec3& a, const dvec3& b) {
-    std::array<std::int64_t, 6> key{};
-    const bool swapped = std::tie(a.x, a.y, a.z) > std::tie(b.x, b.y, b.z);
-    const dvec3 &low = swapped ? b : a, &high = swapped ? a : b;
-    for (int c = 0; c < 3; ++c) {
-        key[static_cast<std::size_t>(c)] = std::llround(low[c] * 1000);
-        key[static_cast<std::size_t>(c) + 3] = std::llround(high[c] * 1000);
-    }
-    return hash_bytes(std::as_bytes(std::span(key)));
+/// Which step of a few millimetres a coordinate is in. Round numbers of metres lie within one, not between two.
+double steps_of(double value_m) { return value_m * 251 + 0.2871; }
+
+using Ends = std::array<std::array<std::int64_t, 3>, 2>;
+
+std::uint64_t key_of(Ends ends) {
+    if (ends[1] < ends[0]) std::swap(ends[0], ends[1]);
+    return hash_bytes(std::as_bytes(std::span(ends)));
 }
 
-dvec3 placed_at(const dmat4& world, const vec3& at) { return dvec3(world * dvec4(dvec3(at), 1.0)); }
+/// Where an edge lies, whichever end comes first.
+std::uint64_t key_of(const dvec3& a, const dvec3& b) {
+    Ends ends{};
+    for (int c = 0; c < 3; ++c) {
+        ends[0][static_cast<std::size_t>(c)] = std::llround(std::floor(steps_of(a[c])));
+        ends[1][static_cast<std::size_t>(c)] = std::llround(std::floor(steps_of(b[c])));
+    }
+    return key_of(ends);
+}
+
+/// Its key, and those that the same edge of another mesh may have by rounding.
+void add_keys(const dvec3& a, const dvec3& b, std::vector<std::uint64_t>& keys) {
+    constexpr double slack = 0.05;  // a fifth of a millimetre
+    std::array<std::array<std::int64_t, 2>, 6> may{};
+    unsigned differ = 0;
+    for (unsigned i = 0; i < 6; ++i) {
+        const double at = steps_of(i < 3 ? a[static_cast<int>(i)] : b[static_cast<int>(i) - 3]);
+        may[i] = {std::llround(std::floor(at - slack)), std::llround(std::floor(at + slack))};
+        if (may[i][0] != may[i][1]) differ |= 1U << i;
+    }
+    for (unsigned choice = 0; choice < 64; ++choice) {
+        if ((choice & ~differ) != 0) continue;
+        Ends ends{};
+        for (unsigned i = 0; i < 6; ++i) ends[i / 3][i % 3] = may[i][choice >> i & 1U];
+        keys.push_back(key_of(ends));
+    }
+}
+
+std::vector<dvec3> placed_points(const importer::Primitive& p, const dmat4& world) {
+    std::vector<dvec3> out;
+    out.reserve(p.positions.size());
+    for (const vec3& at : p.positions) out.emplace_back(world * dvec4(dvec3(at), 1.0));
+    return out;
+}
+
+/// Between two samples two metres, if that makes no less and not very many of them.
+int steps_along(double size_m, int min_steps) { return static_cast<int>(std::clamp(size_m / 2, min_steps * 1.0, 16.0)); }
+
+LightSample mean_of(const LightSample& a, const LightSample& b, const LightSample& c, const vec3& weights) {
+    LightSample out{};
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = weights.x * a[i] + weights.y * b[i] + weights.z * c[i];
+    return out;
+}
 
 class Refiner {
 public:
@@ -70,9 +120,9 @@ public:
         for (double length = max_round_m; length >= min_round_m && !stop(); length /= 2) {
             std::vector<std::vector<std::uint64_t>> keys(meshes_.size());
             for_all_(meshes_.size(), [&](std::size_t i) { keys[i] = find_changes(meshes_[i], length); });
-            std::unordered_set<std::uint64_t> marked;
-            for (const auto& of_mesh : keys) marked.insert(of_mesh.begin(), of_mesh.end());
-            const std::uint64_t added = mark_edges(marked, length);
+            Marks marks{{}, length};
+            for (const auto& of_mesh : keys) marks.keys.insert(of_mesh.begin(), of_mesh.end());
+            const std::uint64_t added = mark_edges(marks, left);
             if (added == 0) continue;
             if (added > left) break;
             left -= added;
@@ -93,6 +143,7 @@ public:
 
 private:
     void find_meshes();
+    [[nodiscard]] double longest_edge_m(const importer::Mesh& mesh, const std::vector<dmat4>& places) const;
     [[nodiscard]] bool may_cut(const importer::Primitive& p) const {
         const importer::Material& material = scene_.materials[p.material];
         return !material.unlit && material.alpha == model::AlphaMode::opaque && p.normals.size() == p.positions.size();
@@ -103,9 +154,22 @@ private:
             if (std::abs(is[i] - mean[i]) > max_off) return true;
         return false;
     }
-    [[nodiscard]] std::vector<std::uint64_t> find_changes(const CutMesh& mesh, double length) const;
-    void find_changes(const importer::Primitive& p, const dmat4& place, double length, std::vector<std::uint64_t>& keys) const;
-    std::uint64_t mark_edges(std::unordered_set<std::uint64_t>& marked, double length);
+    [[nodiscard]] std::vector<std::uint64_t> find_changes(CutMesh& mesh, double length) const;
+    void find_changes(const importer::Primitive& p, const dmat4& place, double length, KnownLight& known,
+                      std::vector<std::uint64_t>& keys) const;
+    /// Edges to be cut, by where they lie.
+    struct Marks {
+        std::unordered_set<std::uint64_t> keys;
+        double shortest_m = 0;  ///< of them
+    };
+    /// Edges of one mesh that lie where one is marked.
+    struct MarkedHere {
+        std::vector<std::uint64_t> keys;  ///< wherever the mesh stands
+        double shortest_m = 0;
+        std::uint64_t added = 0;  ///< triangles
+    };
+    std::uint64_t mark_edges(Marks& marks, std::uint64_t left);
+    [[nodiscard]] MarkedHere mark_edges(CutMesh& mesh, const Marks& marks) const;
     static void cut_edges(CutMesh& mesh);
 
     const importer::Scene& scene_;
@@ -120,23 +184,45 @@ private:
 void Refiner::find_meshes() {
     std::vector<std::vector<dmat4>> places(scene_.meshes.size());
     std::vector<std::uint64_t> triangles(scene_.meshes.size(), 0);
+    std::vector<Box> boxes(scene_.meshes.size());
     for (std::size_t m = 0; m < scene_.meshes.size(); ++m)
-        for (const importer::Primitive& p : scene_.meshes[m].primitives) triangles[m] += p.indices.size() / 3;
+        for (const importer::Primitive& p : scene_.meshes[m].primitives) {
+            triangles[m] += p.indices.size() / 3;
+            for (const vec3& at : p.positions) boxes[m].grow(dvec3(at));
+        }
     Box all;
     for (const importer::Node& node : scene_.nodes) {
-        if (node.mesh == importer::none) continue;
+        if (node.mesh == importer::none || boxes[node.mesh].empty()) continue;
         triangles_ += triangles[node.mesh];
         places[node.mesh].push_back(node.world);
-        for (const importer::Primitive& p : scene_.meshes[node.mesh].primitives)
-            for (const vec3& at : p.positions) all.grow(placed_at(node.world, at));
+        const Box& box = boxes[node.mesh];
+        for (unsigned c = 0; c < 8; ++c) {
+            const dvec3 corner((c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y,
+                               (c & 4U) != 0 ? box.max.z : box.min.z);
+            all.grow(dvec3(node.world * dvec4(corner, 1.0)));
+        }
     }
     far_m_ = all.empty() ? 0 : 2 * all.diagonal();
     for (std::size_t m = 0; m < places.size(); ++m) {
         if (places[m].empty() || places[m].size() > max_cut_places) continue;
-        const auto& primitives = scene_.meshes[m].primitives;
-        if (std::none_of(primitives.begin(), primitives.end(), [&](const auto& p) { return may_cut(p); })) continue;
-        meshes_.push_back({m, scene_.meshes[m], std::move(places[m]), {}});
+        const double longest_m = longest_edge_m(scene_.meshes[m], places[m]);
+        if (longest_m >= min_round_m) meshes_.push_back({m, scene_.meshes[m], std::move(places[m]), longest_m, {}, {}});
     }
+}
+
+/// Of what may be cut, or more: most meshes have short ones alone, and need no copy.
+double Refiner::longest_edge_m(const importer::Mesh& mesh, const std::vector<dmat4>& places) const {
+    float squared = 0;
+    for (const importer::Primitive& p : mesh.primitives) {
+        if (!may_cut(p)) continue;
+        for (std::size_t k = 0; k < p.indices.size(); ++k) {
+            const vec3 way = p.positions[p.indices[k]] - p.positions[p.indices[k % 3 == 2 ? k - 2 : k + 1]];
+            squared = std::max(squared, glm::dot(way, way));
+        }
+    }
+    double stretch = 0;
+    for (const dmat4& place : places) stretch = std::max(stretch, largest_stretch(dmat3(place)));
+    return 1.0001 * stretch * std::sqrt(static_cast<double>(squared));
 }
 
 LightSample Refiner::light_at(const dvec3& at, const dvec3& normal) const {
@@ -154,33 +240,44 @@ LightSample Refiner::light_at(const dvec3& at, const dvec3& normal) const {
     return out;
 }
 
-void Refiner::find_changes(const importer::Primitive& p, const dmat4& place, double length,
+void Refiner::find_changes(const importer::Primitive& p, const dmat4& place, double length, KnownLight& known,
                            std::vector<std::uint64_t>& keys) const {
     const dmat3 normals = glm::transpose(glm::inverse(dmat3(place)));
-    std::vector<dvec3> at;
-    for (const vec3& v : p.positions) at.push_back(placed_at(place, v));
-    std::map<std::uint32_t, LightSample> known;
+    const std::vector<dvec3> at = placed_points(p, place);
     const auto normal_of = [&](const vec3& n) {
         const dvec3 turned = normals * dvec3(n);
         const double size = glm::length(turned);
-        return size > 0 ? turned / size : dvec3(0, 1, 0);
+        return size > 0 && std::isfinite(size) ? turned / size : dvec3(0, 1, 0);
     };
     const auto at_vertex = [&](std::uint32_t v) -> const LightSample& {
-        const auto [found, is_new] = known.try_emplace(v);
+        const auto [found, is_new] = known.at_vertex.try_emplace(v);
         if (is_new) found->second = light_at(at[v], normal_of(p.normals[v]));
         return found->second;
     };
-    std::map<Edge, bool> changes;
     const auto edge_changes = [&](std::uint32_t a, std::uint32_t b) {
-        const auto [found, is_new] = changes.try_emplace(edge_of(a, b), false);
+        const auto [found, is_new] = known.changes.try_emplace(edge_of(a, b), false);
         if (!is_new) return found->second;
         const LightSample &first = at_vertex(a), &last = at_vertex(b);
-        for (const double t : {0.5, 0.25, 0.75}) {
-            LightSample mean{};
-            for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = first[i] + static_cast<float>(t) * (last[i] - first[i]);
-            const vec3 n = p.normals[a] + static_cast<float>(t) * (p.normals[b] - p.normals[a]);
-            if (is_off(light_at(at[a] + t * (at[b] - at[a]), normal_of(n)), mean)) return found->second = true;
+        const int steps = steps_along(glm::length(at[a] - at[b]), 4);
+        for (int k = 1; k < steps; ++k) {
+            const float t = static_cast<float>(k) / static_cast<float>(steps);
+            const vec3 n = p.normals[a] + t * (p.normals[b] - p.normals[a]);
+            const dvec3 there = at[a] + static_cast<double>(t) * (at[b] - at[a]);
+            if (is_off(light_at(there, normal_of(n)), mean_of(first, last, last, {1 - t, t, 0}))) return found->second = true;
         }
+        return false;
+    };
+    const auto inside_changes = [&](const std::uint32_t* v, double longest_m) {
+        if (!known.even.insert({v[0], v[1], v[2]}).second) return false;
+        const LightSample &a = at_vertex(v[0]), &b = at_vertex(v[1]), &c = at_vertex(v[2]);
+        const int steps = steps_along(longest_m, 3);
+        for (int i = 1; i + 1 < steps; ++i)
+            for (int j = 1; i + j < steps; ++j) {
+                const vec3 w = vec3(i, j, steps - i - j) / static_cast<float>(steps);
+                const dvec3 there = dvec3(w.x) * at[v[0]] + dvec3(w.y) * at[v[1]] + dvec3(w.z) * at[v[2]];
+                const vec3 n = w.x * p.normals[v[0]] + w.y * p.normals[v[1]] + w.z * p.normals[v[2]];
+                if (is_off(light_at(there, normal_of(n)), mean_of(a, b, c, w))) return true;
+            }
         return false;
     };
     for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
@@ -193,61 +290,71 @@ void Refiner::find_changes(const importer::Primitive& p, const dmat4& place, dou
             const double size = glm::length(at[a] - at[b]);
             if (size > max_m) max_m = size, longest = k;
             if (size < length || !edge_changes(a, b)) continue;
-            keys.push_back(key_of(at[a], at[b]));
+            add_keys(at[a], at[b], keys);
             any = true;
         }
-        if (any || max_m < length) continue;
-        LightSample mean{};
-        for (std::uint32_t k = 0; k < 3; ++k)
-            for (std::size_t s = 0; s < mean.size(); ++s) mean[s] += at_vertex(v[k])[s] / 3;
-        const dvec3 middle = (at[v[0]] + at[v[1]] + at[v[2]]) / 3.0;
-        if (is_off(light_at(middle, normal_of(p.normals[v[0]] + p.normals[v[1]] + p.normals[v[2]])), mean))
-            keys.push_back(key_of(at[v[longest]], at[v[(longest + 1) % 3]]));
+        if (!any && max_m >= length && inside_changes(v, max_m)) add_keys(at[v[longest]], at[v[(longest + 1) % 3]], keys);
     }
 }
 
-std::vector<std::uint64_t> Refiner::find_changes(const CutMesh& mesh, double length) const {
+std::vector<std::uint64_t> Refiner::find_changes(CutMesh& mesh, double length) const {
     std::vector<std::uint64_t> keys;
-    for (const importer::Primitive& p : mesh.cut.primitives)
-        if (may_cut(p))
-            for (const dmat4& place : mesh.places) find_changes(p, place, length, keys);
+    if (mesh.longest_m < length) return keys;
+    const std::size_t places = mesh.places.size();
+    mesh.known.resize(mesh.cut.primitives.size() * places);
+    for (std::size_t i = 0; i < mesh.cut.primitives.size(); ++i)
+        for (std::size_t n = 0; n < places && may_cut(mesh.cut.primitives[i]); ++n)
+            find_changes(mesh.cut.primitives[i], mesh.places[n], length, mesh.known[i * places + n], keys);
     return keys;
 }
 
-/// Marks every edge that lies where one is marked, wherever its mesh stands. Returns how many triangles that adds.
-std::uint64_t Refiner::mark_edges(std::unordered_set<std::uint64_t>& marked, double length) {
-    std::atomic<std::uint64_t> added{0};
-    for (int round = 0; round < rounds_of_keys && !marked.empty(); ++round) {
-        added = 0;
-        std::vector<std::vector<std::uint64_t>> more(meshes_.size());
-        for_all_(meshes_.size(), [&](std::size_t m) {
-            CutMesh& mesh = meshes_[m];
-            mesh.edges.assign(mesh.cut.primitives.size(), {});
-            for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
-                const importer::Primitive& p = mesh.cut.primitives[i];
-                if (!may_cut(p)) continue;
-                for (std::size_t k = 0; k < p.indices.size(); ++k) {
-                    const std::uint32_t a = p.indices[k], b = p.indices[k % 3 == 2 ? k - 2 : k + 1];
-                    const auto key = [&](const dmat4& place) {
-                        return key_of(placed_at(place, p.positions[a]), placed_at(place, p.positions[b]));
-                    };
-                    const double size = glm::length(dmat3(mesh.places[0]) * dvec3(p.positions[a] - p.positions[b]));
-                    if (size < 0.5 * length) continue;
-                    const auto is_marked = [&](const dmat4& place) { return marked.contains(key(place)); };
-                    if (std::none_of(mesh.places.begin(), mesh.places.end(), is_marked)) continue;
-                    ++added;
-                    mesh.edges[i].push_back(edge_of(a, b));
-                    for (const dmat4& place : mesh.places) more[m].push_back(key(place));
-                }
-                std::sort(mesh.edges[i].begin(), mesh.edges[i].end());
-                mesh.edges[i].erase(std::unique(mesh.edges[i].begin(), mesh.edges[i].end()), mesh.edges[i].end());
+Refiner::MarkedHere Refiner::mark_edges(CutMesh& mesh, const Marks& marks) const {
+    MarkedHere here{{}, marks.shortest_m, 0};
+    mesh.edges.assign(mesh.cut.primitives.size(), {});
+    const double min_m = marks.shortest_m - key_slack_m;
+    if (mesh.longest_m < min_m) return here;
+    for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
+        const importer::Primitive& p = mesh.cut.primitives[i];
+        if (!may_cut(p)) continue;
+        std::vector<std::vector<dvec3>> placed;
+        for (const dmat4& place : mesh.places) placed.push_back(placed_points(p, place));
+        for (std::size_t k = 0; k < p.indices.size(); ++k) {
+            const std::uint32_t a = p.indices[k], b = p.indices[k % 3 == 2 ? k - 2 : k + 1];
+            const auto is_marked = [&](const std::vector<dvec3>& at) {
+                return glm::length(at[a] - at[b]) >= min_m && marks.keys.contains(key_of(at[a], at[b]));
+            };
+            if (std::none_of(placed.begin(), placed.end(), is_marked)) continue;
+            here.added += mesh.places.size();
+            mesh.edges[i].push_back(edge_of(a, b));
+            for (const std::vector<dvec3>& at : placed) {
+                const double size_m = glm::length(at[a] - at[b]);
+                if (size_m < key_slack_m) continue;  // squeezed flat
+                add_keys(at[a], at[b], here.keys);
+                here.shortest_m = std::min(here.shortest_m, size_m);
             }
-        });
-        const std::size_t before = marked.size();
-        for (const auto& keys : more) marked.insert(keys.begin(), keys.end());
-        if (marked.size() == before) break;
+        }
+        std::sort(mesh.edges[i].begin(), mesh.edges[i].end());
+        mesh.edges[i].erase(std::unique(mesh.edges[i].begin(), mesh.edges[i].end()), mesh.edges[i].end());
     }
-    return added;
+    return here;
+}
+
+/// Marks every edge that lies where one is marked, wherever its mesh stands, until none is added. Returns how many triangles that
+/// adds; where it is more than what is left, some may be missing.
+std::uint64_t Refiner::mark_edges(Marks& marks, std::uint64_t left) {
+    while (!marks.keys.empty()) {
+        std::vector<MarkedHere> here(meshes_.size());
+        for_all_(meshes_.size(), [&](std::size_t m) { here[m] = mark_edges(meshes_[m], marks); });
+        const std::size_t before = marks.keys.size();
+        std::uint64_t added = 0;
+        for (const MarkedHere& one : here) {
+            marks.keys.insert(one.keys.begin(), one.keys.end());
+            marks.shortest_m = std::min(marks.shortest_m, one.shortest_m);
+            added += one.added;
+        }
+        if (marks.keys.size() == before || added > left) return added;
+    }
+    return 0;
 }
 
 /// A vertex halfway between two others.
@@ -266,6 +373,32 @@ std::uint32_t add_middle(importer::Primitive& p, const Edge& edge) {
     return static_cast<std::uint32_t>(p.positions.size() - 1);
 }
 
+/// One triangle, or what it falls into: edges alone decide, so its neighbours fit.
+void cut_triangle(const std::uint32_t* corners, const std::map<Edge, std::uint32_t>& middles, std::vector<std::uint32_t>& out) {
+    std::array<std::uint32_t, 3> v{corners[0], corners[1], corners[2]}, middle{};
+    std::array<bool, 3> has{};
+    int count = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto found = middles.find(edge_of(v[k], v[(k + 1) % 3]));
+        has[k] = found != middles.end();
+        if (has[k]) middle[k] = found->second, ++count;
+    }
+    // Turned until the first edge is the only one that is cut, or the only one that is not.
+    while ((count == 1 && !has[0]) || (count == 2 && has[0])) {
+        std::rotate(v.begin(), v.begin() + 1, v.end());
+        std::rotate(middle.begin(), middle.begin() + 1, middle.end());
+        std::rotate(has.begin(), has.begin() + 1, has.end());
+    }
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { out.insert(out.end(), {a, b, c}); };
+    if (count == 0) add(v[0], v[1], v[2]);
+    if (count == 1) add(v[0], middle[0], v[2]), add(middle[0], v[1], v[2]);
+    if (count == 2) add(v[2], middle[2], middle[1]), add(v[0], v[1], middle[1]), add(v[0], middle[1], middle[2]);
+    if (count == 3) {
+        add(v[0], middle[0], middle[2]), add(middle[0], v[1], middle[1]), add(middle[2], middle[1], v[2]);
+        add(middle[0], middle[1], middle[2]);
+    }
+}
+
 void Refiner::cut_edges(CutMesh& mesh) {
     for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
         if (mesh.edges[i].empty()) continue;
@@ -274,35 +407,7 @@ void Refiner::cut_edges(CutMesh& mesh) {
         for (const Edge& edge : mesh.edges[i]) middles.emplace(edge, add_middle(p, edge));
         std::vector<std::uint32_t> out;
         out.reserve(p.indices.size() * 2);
-        for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
-            std::array<std::uint32_t, 3> v{p.indices[t], p.indices[t + 1], p.indices[t + 2]}, middle{};
-            std::array<bool, 3> has{};
-            int count = 0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto found = middles.find(edge_of(v[k], v[(k + 1) % 3]));
-                has[k] = found != middles.end();
-                if (has[k]) middle[k] = found->second, ++count;
-            }
-            // Turned until the first edge is the only one that is cut, or the only one that is not.
-            while (count == 1 && !has[0]) {
-                std::rotate(v.begin(), v.begin() + 1, v.end());
-                std::rotate(middle.begin(), middle.begin() + 1, middle.end());
-                std::rotate(has.begin(), has.begin() + 1, has.end());
-            }
-            while (count == 2 && has[0]) {
-                std::rotate(v.begin(), v.begin() + 1, v.end());
-                std::rotate(middle.begin(), middle.begin() + 1, middle.end());
-                std::rotate(has.begin(), has.begin() + 1, has.end());
-            }
-            const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { out.insert(out.end(), {a, b, c}); };
-            if (count == 0) add(v[0], v[1], v[2]);
-            if (count == 1) add(v[0], middle[0], v[2]), add(middle[0], v[1], v[2]);
-            if (count == 2) add(v[2], middle[2], middle[1]), add(v[0], v[1], middle[1]), add(v[0], middle[1], middle[2]);
-            if (count == 3) {
-                add(v[0], middle[0], middle[2]), add(middle[0], v[1], middle[1]), add(middle[2], middle[1], v[2]);
-                add(middle[0], middle[1], middle[2]);
-            }
-        }
+        for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) cut_triangle(&p.indices[t], middles, out);
         p.indices = std::move(out);
     }
 }
