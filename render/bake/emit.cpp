@@ -91,6 +91,7 @@ model::Index add_box_material(const BoxForm& form, model::Model& model) {
     m.two_sided = true;  // the far half shows through this one's holes
     m.alpha_cutoff = shown_alpha;
     m.effects = model::effect_texture | model::effect_alpha_mask;
+    if (model.light.fog_visibility_m > 0) m.effects |= model::effect_fog;
     model.materials.push_back(m);
     return static_cast<model::Index>(model.materials.size() - 1);
 }
