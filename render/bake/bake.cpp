@@ -359,7 +359,9 @@ std::optional<PlacedBoxes> BakeContext::add_boxes() {
         if (!stage.step()) go = false;
     });
     if (!go) return {};
-    return PlacedBoxes(std::move(boxes), proxy, model);
+    std::optional<PlacedBoxes> placed(std::in_place, std::move(boxes), proxy, model);
+    fill_scene_light(model);  // pictures of their vertices are looked at next
+    return placed;
 }
 
 void BakeContext::measure_areas() {

@@ -85,6 +85,7 @@ struct Painter {
     FormPicture& picture;
     mat3 cofactor{1.0F};  ///< turns normals
     bool mirrored = false;
+    bool own_vertices = false;  ///< the model's, which have shadows; not others that look like it
 
     struct Corner {
         vec3 at;  ///< pixels, pixels, metres towards the eye
@@ -112,7 +113,7 @@ struct Painter {
         if ((material.effects & model::effect_sun) != 0) {
             const vec3 sky = glm::mix(vec3(0.34F, 0.32F, 0.30F), vec3(0.52F, 0.56F, 0.62F), 0.5F * n.y + 0.5F);
             float sun = std::max(glm::dot(n, vec3(model.sun_direction)), 0.0F);
-            if ((material.effects & model::effect_shadow) != 0)
+            if (own_vertices && (material.effects & model::effect_shadow) != 0)
                 sun *= static_cast<float>(model.sun_seen[static_cast<std::size_t>(&v - model.vertices.data())].share[0]) / 255.0F;
             by_light = sky + vec3(0.56F, 0.53F, 0.47F) * sun;
         }
@@ -285,7 +286,7 @@ void draw_form(const model::Model& model, const model::Representation& rep, Form
     const ToPicture to(picture.view, placement.linear, placement.origin);
     for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
         const model::Part& part = model.parts[p];
-        const Painter painter{model, model.materials[part.material], picture, to.cofactor, to.mirrored};
+        const Painter painter{model, model.materials[part.material], picture, to.cofactor, to.mirrored, true};
         const auto corner = [&](std::uint32_t i) {
             return to.corner(model.vertices[part.first_vertex + model.indices[part.first_index + i]]);
         };
@@ -298,7 +299,7 @@ void draw_geometry(const model::Model& looks, const std::vector<model::Vertex>& 
     if (picture.samples.empty()) return;
     const ToPicture to(picture.view, mat3(1.0F), dvec3(0.0));
     for (const GeometryPart& part : parts) {
-        const Painter painter{looks, looks.materials[part.material], picture, to.cofactor, to.mirrored};
+        const Painter painter{looks, looks.materials[part.material], picture, to.cofactor, to.mirrored, false};
         const auto corner = [&](std::size_t i) { return to.corner(vertices[part.indices[i]]); };
         for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) painter.draw({corner(i), corner(i + 1), corner(i + 2)});
     }
