@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -109,13 +110,21 @@ void add_nearest(const model::Model& model, const VertexRange& range, const std:
     std::sort(known.begin(), known.end());
     for (std::uint32_t v = 0; v < range.count; ++v) {
         if (!open[v]) continue;
+        const vec3 here = at(v);
         float min_m = max_m;
         std::uint32_t nearest = range.count;
-        for (auto other = std::lower_bound(known.begin(), known.end(), std::pair(at(v).x - max_m, std::uint32_t{0}));
-             other != known.end() && other->first <= at(v).x + max_m; ++other) {
-            const float distance = glm::length(at(other->second) - at(v));
-            if (distance < min_m && glm::dot(normal(v), normal(other->second)) >= min_alike)
-                min_m = distance, nearest = other->second;
+        const auto look_at = [&](std::uint32_t other) {
+            const float distance = glm::length(at(other) - here);
+            if (distance < min_m && glm::dot(normal(v), normal(other)) >= min_alike) min_m = distance, nearest = other;
+        };
+        // Outwards: what is near ends the search.
+        auto up = std::lower_bound(known.begin(), known.end(), std::pair(here.x, std::uint32_t{0})), down = up;
+        while (true) {
+            const bool more_up = up != known.end() && up->first - here.x < min_m;
+            const bool more_down = down != known.begin() && here.x - std::prev(down)->first < min_m;
+            if (!more_up && !more_down) break;
+            if (more_up) look_at((up++)->second);
+            if (more_down) look_at((--down)->second);
         }
         if (nearest < range.count) out.push_back({v, {nearest}});
     }
