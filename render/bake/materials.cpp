@@ -333,13 +333,17 @@ std::vector<model::EffectFinding> find_effects(const model::Model& model, const 
     constexpr std::array<const char*, model::effect_count> what = {"have an image",        "have vertex colours", "are lit",
                                                                    "are cut out by alpha", "are transparent",     "are shaded",
                                                                    "lie in shadow",        "are lit by lamps",    "lie in fog"};
+    std::vector<model::EffectMask> effects;
+    for (const model::Material& material : model.materials) effects.push_back(material.effects);
+    for (const auto& [copy, original] : light.openness.copies)  // its triangles are the original's
+        if (copy < effects.size() && original < effects.size()) effects[original] |= effects[copy];
     std::vector<model::EffectFinding> findings;
     for (std::size_t e = 0; e < model::effect_count; ++e) {
         model::EffectFinding f;
         f.bit = 1U << e;
         std::size_t materials = 0;
         for (std::size_t m = 0; m < triangles_of_material.size(); ++m) {
-            if ((model.materials[m].effects & f.bit) == 0 || triangles_of_material[m] == 0) continue;
+            if ((effects[m] & f.bit) == 0 || triangles_of_material[m] == 0) continue;
             ++materials;
             f.triangles += triangles_of_material[m];
         }

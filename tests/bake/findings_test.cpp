@@ -48,6 +48,42 @@ TEST(Findings, OfAnEmptyModelCallForNothing) {
     }
 }
 
+TEST(Findings, CountLampsThatShineOnCopiesWithoutTheSunAsTheOriginals) {
+    test::SmallModel scene;
+    const auto original = scene.material(test::plain(1, 1, 1, 1, model::effect_sun | model::effect_openness));
+    scene.square(original, test::at(0, 0, -1));
+    const auto copy = scene.material(test::plain(1, 1, 1, 1, model::effect_openness | model::effect_lamps));
+    scene.square(copy, test::at(0, 0, -2));
+    bake::SceneLight light;
+    light.openness.measured = true;
+    light.openness.triangles = 4;
+    light.openness.closed = 2;
+    light.openness.copies = {{copy, original}};
+    light.baked.lit = 17;
+    const auto findings = bake::find_effects(scene.finish(), {4}, light);
+    EXPECT_TRUE(findings[7].called_for);
+    EXPECT_EQ(findings[7].triangles, 4U);
+    EXPECT_EQ(findings[7].reason, "1 of 1 materials are lit by lamps; 17 vertices are lit or glow");
+    EXPECT_EQ(findings[2].triangles, 2U);
+    EXPECT_FALSE(findings[6].called_for);
+}
+
+TEST(Findings, OfShadowsAndFogNameVerticesAndMetres) {
+    test::SmallModel scene;
+    scene.square(scene.material(test::plain(1, 1, 1, 1, model::effect_sun | model::effect_shadow | model::effect_fog)),
+                 test::at(0, 0, -1));
+    bake::SceneLight light;
+    light.baked.vertices = 20;
+    light.baked.in_shadow = 3;
+    model::Model m = scene.finish();
+    m.light.fog_visibility_m = 250;
+    const auto findings = bake::find_effects(m, {2}, light);
+    EXPECT_EQ(findings[6].reason, "1 of 1 materials lie in shadow; 3 of 20 vertices in the sun lie in shadow at some hour");
+    EXPECT_EQ(findings[8].reason, "1 of 1 materials lie in fog; one sees 250 m far");
+    EXPECT_FALSE(findings[7].called_for);
+    EXPECT_EQ(findings[7].reason, "no lamp and nothing that glows, or the bake is of quality draft");
+}
+
 TEST(Findings, OfABakedModelCountItsFullDetail) {
     importer::Scene scene;
     scene.materials.emplace_back();
