@@ -72,6 +72,9 @@ private:
     void add_sun(const PlacedStart& from, bool two_sided, std::array<double, moments>& seen) const;
     void put_shadow(BakedLight& found);
     void put_lamps(BakedLight& found);
+    /// Those of the range's parts that use such a vertex.
+    template <class IsSuch>
+    void mark_materials(std::size_t r, const IsSuch& is_such, std::vector<bool>& materials) const;
     void give_effect(model::EffectMask needed, model::EffectMask given, const std::vector<bool>& materials);
 
     model::Model& model_;
@@ -160,24 +163,35 @@ void LightMaker::fill_unknown(std::size_t r) {
     }
 }
 
-/// Vertices show their colour times light: a glow is divided by that colour.
+/// Vertices show their colour times light: a glow is divided by that colour. Levels of detail share vertices, which glow once.
 void LightMaker::add_glow(std::size_t r) {
+    std::vector<vec3> glow;
     for (const model::Index p : ranges_[r].parts) {
         const model::Part& part = model_.parts[p];
-        const vec3 glow = part.material < input_.emission.size() ? input_.emission[part.material] : vec3(0);
-        if (!(std::max({glow.r, glow.g, glow.b}) > 0)) continue;
+        const vec3 sent = part.material < input_.emission.size() ? input_.emission[part.material] : vec3(0);
+        if (!(std::max({sent.r, sent.g, sent.b}) > 0)) continue;
         const model::Material& material = model_.materials[part.material];
         vec3 light(0);
         for (int c = 0; c < 3; ++c)
-            light[c] = std::min(encoded(glow[c]) / std::max(material.colour[static_cast<std::size_t>(c)], min_base), max_glow);
-        std::vector<bool> done(light_[r].before.size(), false);
+            light[c] = std::min(encoded(sent[c]) / std::max(material.colour[static_cast<std::size_t>(c)], min_base), max_glow);
+        glow.resize(ranges_[r].count, vec3(0));
         for (std::uint32_t i = 0; i < part.index_count; ++i) {
-            const std::uint32_t v = model_.indices[part.first_index + i];
-            if (done[v]) continue;
-            done[v] = true;
-            light_[r].before[v] += light;
-            light_[r].behind[v] += light;
+            vec3& here = glow[model_.indices[part.first_index + i]];
+            here = glm::max(here, light);
         }
+    }
+    for (std::size_t v = 0; v < glow.size(); ++v) {
+        light_[r].before[v] += glow[v];
+        light_[r].behind[v] += glow[v];
+    }
+}
+
+template <class IsSuch>
+void LightMaker::mark_materials(std::size_t r, const IsSuch& is_such, std::vector<bool>& materials) const {
+    for (const model::Index p : ranges_[r].parts) {
+        const model::Part& part = model_.parts[p];
+        const std::uint32_t* first = model_.indices.data() + part.first_index;
+        if (!materials[part.material]) materials[part.material] = std::any_of(first, first + part.index_count, is_such);
     }
 }
 
@@ -190,15 +204,17 @@ void LightMaker::put_shadow(BakedLight& found) {
     const model::SunSeen all = seen_always();
     std::vector<bool> shaded(model_.materials.size(), false);
     for (std::size_t r = 0; r < ranges_.size(); ++r) {
-        bool any = false;
+        const RangeLight& light = light_[r];
+        const auto in_shadow = [&](std::uint32_t v) {
+            return light.in_sun[v] && !std::equal(std::begin(all.share), std::end(all.share), std::begin(light.sun[v].share));
+        };
+        std::uint64_t here = 0;
         for (std::uint32_t v = 0; v < ranges_[r].count; ++v) {
-            if (!light_[r].starts[v].used || !light_[r].in_sun[v]) continue;
-            ++found.vertices;
-            if (std::equal(std::begin(all.share), std::end(all.share), std::begin(light_[r].sun[v].share))) continue;
-            ++found.in_shadow;
-            any = true;
+            found.vertices += light.in_sun[v] ? 1 : 0;
+            here += in_shadow(v) ? 1 : 0;
         }
-        for (const model::Index p : ranges_[r].parts) shaded[model_.parts[p].material] = shaded[model_.parts[p].material] || any;
+        if (here > 0) mark_materials(r, in_shadow, shaded);
+        found.in_shadow += here;
     }
     if (found.in_shadow == 0) return;
     model_.sun_seen.assign(model_.vertices.size(), all);
@@ -211,16 +227,19 @@ void LightMaker::put_lamps(BakedLight& found) {
     std::vector<bool> lit(model_.materials.size(), false);
     float max_light = 0;
     for (std::size_t r = 0; r < ranges_.size(); ++r) {
-        float max_here = 0;
-        for (std::uint32_t v = 0; v < ranges_[r].count; ++v) {
+        const auto light_of = [&](std::uint32_t v) {
             const vec3 brighter = glm::max(light_[r].before[v], light_[r].behind[v]);
-            const float here = std::max({brighter.r, brighter.g, brighter.b});
-            if (here > 0) ++found.lit;
-            max_here = std::max(max_here, here);
+            return std::max({brighter.r, brighter.g, brighter.b});
+        };
+        std::uint64_t here = 0;
+        for (std::uint32_t v = 0; v < ranges_[r].count; ++v) {
+            here += light_of(v) > 0 ? 1 : 0;
+            max_light = std::max(max_light, light_of(v));
         }
-        max_light = std::max(max_light, max_here);
-        for (const model::Index p : ranges_[r].parts)
-            lit[model_.parts[p].material] = lit[model_.parts[p].material] || max_here > 0;
+        if (here > 0)
+            mark_materials(
+                r, [&](std::uint32_t v) { return light_of(v) > 0; }, lit);
+        found.lit += here;
     }
     if (found.lit == 0) return;
     model_.light.max_lamp_light = max_light;
