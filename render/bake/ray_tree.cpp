@@ -30,7 +30,8 @@ vec3 slanted(const dvec3& way) {
 }
 
 /// The share of a way at which it comes into a box before `until`; far_share: nowhere.
-float enters(const vec3& low, const vec3& high, const vec3& from, const vec3& inverse, float until) {
+[[gnu::always_inline]] inline float enters(const vec3& low, const vec3& high, const vec3& from, const vec3& inverse,
+                                           float until) {
     const vec3 a = (low - from) * inverse, b = (high - from) * inverse;
     const vec3 near = glm::min(a, b), far = glm::max(a, b);
     const float enter = std::max(std::max(near.x, near.y), std::max(near.z, 0.0F));
@@ -135,6 +136,7 @@ struct RayTree::Building {
 RayTree::RayTree(const model::Ground& ground) : ground_(ground) {
     for (const model::GroundMesh& mesh : ground.meshes) meshes_.push_back(make_mesh(ground, mesh));
     for (const model::GroundInstance& instance : ground.instances) inverse_.push_back(glm::inverse(dmat3(instance.linear)));
+    for (const Box& box : ground.instance_boxes) around_.push_back({box.centre(), vec3(box.half()) * 1.00001F + 1e-5F});
 }
 
 RayTree::Mesh RayTree::make_mesh(const model::Ground& ground, const model::GroundMesh& mesh) {
@@ -156,7 +158,11 @@ bool RayTree::cross_mesh(const Mesh& mesh, const LocalRay& ray, bool any, float&
     if (mesh.nodes.empty()) return false;
     bool found = false;
     const vec3 inverse = 1.0F / ray.way;
-    std::array<std::pair<std::uint32_t, float>, 2 * max_depth + 4> stack;
+    struct Waiting {
+        std::uint32_t node;
+        float at;
+    };
+    std::array<Waiting, 2 * max_depth + 4> stack;  // not filled with zeros for each ray
     std::size_t top = 0;
     const auto push = [&](std::uint32_t n) {
         const float at = enters(mesh.nodes[n].low, mesh.nodes[n].high, ray.from, inverse, share);
@@ -171,7 +177,7 @@ bool RayTree::cross_mesh(const Mesh& mesh, const LocalRay& ray, bool any, float&
             const std::size_t before = top;
             push(node.first);
             push(node.first + 1);
-            if (top == before + 2 && stack[before].second < stack[before + 1].second) std::swap(stack[before], stack[before + 1]);
+            if (top == before + 2 && stack[before].at < stack[before + 1].at) std::swap(stack[before], stack[before + 1]);
             continue;
         }
         for (std::uint32_t t = node.first; t < node.first + node.count; ++t) {
@@ -206,15 +212,15 @@ float RayTree::first_share(const Ray& ray, bool any) const {
     };
     cross(meshes_[0], ray.from, way);
     const dvec3 to = ray.from + way;
-    const Box around{glm::min(ray.from, to), glm::max(ray.from, to)};
+    const Box box{glm::min(ray.from, to), glm::max(ray.from, to)};
+    const vec3 inverse = 1.0F / slanted(way);
     model::ground_tree::for_leaves(
         static_cast<std::uint32_t>(ground_.instances.size()),
         [&](std::uint32_t node) {
             if (any && share <= 1) return false;
-            const Box& box = ground_.instance_boxes[node];
-            if (!model::ground_tree::overlap(around, box)) return false;
-            const vec3 from(ray.from - box.centre()), half(box.half());
-            return enters(-half * 1.00001F - 1e-5F, half * 1.00001F + 1e-5F, from, 1.0F / slanted(way), limit) < far_share;
+            if (!model::ground_tree::overlap(box, ground_.instance_boxes[node])) return false;
+            const Around& around = around_[node];
+            return enters(-around.half, around.half, vec3(ray.from - around.middle), inverse, limit) < far_share;
         },
         [&](std::uint32_t number) {
             const model::GroundInstance& instance = ground_.instances[number];

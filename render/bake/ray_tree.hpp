@@ -44,6 +44,11 @@ private:
     };
     struct Bounds;
     struct Building;
+    /// Of one instance or several: where they are, with a little room.
+    struct Around {
+        dvec3 middle{0.0};
+        vec3 half{0.0F};
+    };
     /// A ray in a mesh's frame; its way is as long as the ray.
     struct LocalRay {
         vec3 from{0.0F}, way{0.0F};
@@ -56,6 +61,7 @@ private:
     const model::Ground& ground_;
     std::vector<Mesh> meshes_;
     std::vector<dmat3> inverse_;  ///< by instance
+    std::vector<Around> around_;  ///< by node of the tree of instances
 };
 
 }  // namespace surefoot::bake
