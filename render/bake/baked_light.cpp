@@ -109,7 +109,7 @@ void LightMaker::add_sun(const PlacedStart& from, bool two_sided, std::array<dou
         }
         const dvec3 at = from.at + (faces < 0 ? -ray_lift_m : ray_lift_m) * from.normal;
         if (input_.opaque.is_blocked({at, directions_[m], far_m_})) continue;
-        seen[m] += input_.leaves.is_blocked({at, directions_[m], far_m_}) ? through_leaves : 1;
+        seen[m] += input_.leaves != nullptr && input_.leaves->is_blocked({at, directions_[m], far_m_}) ? through_leaves : 1;
     }
 }
 

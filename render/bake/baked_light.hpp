@@ -24,7 +24,7 @@ struct LightInput {
     const std::vector<vec3>& emission;        ///< by material of the model
     const std::vector<std::uint8_t>& within;  ///< Openness::within
     const RayTree& opaque;
-    const RayTree& leaves;  ///< what lets a third of the sun through
+    const RayTree* leaves = nullptr;  ///< lets a third of the sun through; null: nothing does
 };
 
 /// Fills Model::sun_seen, lamp_light and light, and gives lit materials effect_shadow and effect_lamps, each only if something is

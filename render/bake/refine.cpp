@@ -231,7 +231,9 @@ LightSample Refiner::light_at(const dvec3& at, const dvec3& normal) const {
     for (std::size_t i = 0; i < sun_rays; ++i) {
         const double faces = glm::dot(normal, directions_[i]);
         if (faces > 0 && directions_[i].y > 0 && !light_.opaque->is_blocked({from, directions_[i], far_m_}))
-            out[i] = static_cast<float>(0.6 * faces * (light_.leaves->is_blocked({from, directions_[i], far_m_}) ? 0.33 : 1.0));
+            out[i] = static_cast<float>(
+                0.6 * faces *
+                (light_.leaves != nullptr && light_.leaves->is_blocked({from, directions_[i], far_m_}) ? 0.33 : 1.0));
     }
     if (!light_.lamps->empty()) {
         const vec3 shown = shown_light(light_.lamps->lux_at(at, normal));

@@ -21,7 +21,7 @@ struct RefineLight {
     model::LightFacts facts;  ///< of the day whose other shadows count too
     const RayTree* opaque;    ///< what hides
     const LampField* lamps;
-    const RayTree* leaves;  ///< what lets some of the sun through
+    const RayTree* leaves = nullptr;  ///< lets some of the sun through; null: nothing does
 };
 
 /// By mesh of the scene: the same surface of more triangles. None: as it is.

@@ -46,7 +46,7 @@ std::optional<SceneLight> measure_scene_light(const importer::Scene& scene, cons
     if (progress.stopped()) return {};
     const std::vector<vec3> emission = emission_of(scene, model, found.openness);
     Stage stage(progress, "shadows", baked_light_steps(model));
-    found.baked = measure_baked_light(model, {rays.lamps, emission, found.openness.within, rays.opaque, rays.leaves},
+    found.baked = measure_baked_light(model, {rays.lamps, emission, found.openness.within, rays.opaque, &rays.leaves},
                                       on_all_cores, [&] { return stage.step(); });
     if (progress.stopped()) return {};
     return found;

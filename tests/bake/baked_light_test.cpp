@@ -78,6 +78,26 @@ importer::Scene post_in_the_sun() {
     return scene;
 }
 
+TEST(BakedLight, SmallThingsLetAThirdOfTheSunThroughAndGlassAllOfIt) {
+    importer::Scene scene;
+    scene.sun = importer::Sun{"noon", dvec3(0, 1, 0), 3};
+    lit::put(scene, lit::floor_of(15, 6), "floor", dvec3(0));
+    lit::put(scene, lit::floor_of(0.12F), "leaf", dvec3(5, 2, 5));
+    scene.materials.emplace_back().alpha = model::AlphaMode::blend;
+    scene.materials.back().colour[3] = 0.3F;
+    importer::Primitive pane = lit::floor_of(1);
+    pane.material = 1;
+    lit::put(scene, std::move(pane), "glass", dvec3(-5, 2, -5));
+    const model::Model m = lit_bake(scene);
+    std::size_t below = 0;
+    for (const Seen& v : vertices_of(m, "floor")) {
+        const bool shaded = std::abs(v.at.x - 5) < 0.1 && std::abs(v.at.z - 5) < 0.1;
+        EXPECT_EQ(m.sun_seen[v.vertex].share[0], shaded ? 85 : 255) << v.at.x << ' ' << v.at.z;
+        below += shaded ? 1 : 0;
+    }
+    EXPECT_GT(below, 0U);
+}
+
 TEST(BakedLight, ShadowsOfAPostFallWhereTheSunOfEachHourThrowsThem) {
     bake::BakeOptions options;
     options.sun = model::SunTime{15, 100, 40};
