@@ -27,9 +27,10 @@ struct RefineLight {
 /// By mesh of the scene: the same surface of more triangles. None: as it is.
 using RefinedMeshes = std::vector<std::optional<importer::Mesh>>;
 
-/// Edges are cut down to half a metre, the longest first, until a quarter more triangles are there. Only lit opaque materials of
-/// meshes that stand in at most four places. for_all may run on many threads; the same meshes at any number of them. `stop` is
-/// looked at between rounds; then what is there is returned.
+/// Edges are cut down to half a metre, the longest first, until a quarter more triangles are there, or 20 000. They count in each
+/// place. Only lit opaque materials of meshes that stand in at most four places; of what is beside them, nothing else is cut.
+/// An edge is cut wherever it lies, so in a mesh of several sizes it may be shorter in the small ones. for_all may run on many
+/// threads; the same meshes at any number of them. `stop` is looked at between rounds; then what is there is returned.
 RefinedMeshes refine_for_light(const importer::Scene& scene, const RefineLight& light, const ForAll& for_all,
                                const std::function<bool()>& stop);
 
