@@ -19,6 +19,7 @@ namespace {
 constexpr std::size_t rays = 24;
 constexpr double room_m = 3;                // what is nearer shades
 constexpr std::uint8_t within_share = 230;  // of a room that is hidden: the mean ray is 0.3 m long
+constexpr std::size_t min_rising = 6;       // rays that tell of the sky: of a wall, half of them
 constexpr double min_up = 0.1;              // rays to the sky rise: what lies below the horizon is ground
 
 /// Spread evenly over a hemisphere about +Z, by the cosine.
@@ -102,15 +103,22 @@ void OpennessMaker::add_seen(const dvec3& at, const dvec3& normal, Seen& seen) c
     const dvec3 other = std::abs(normal.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
     const dvec3 x = glm::normalize(glm::cross(other, normal)), y = glm::cross(normal, x);
     const dvec3 from = at + ray_lift_m * normal;
-    for (const dvec3& d : directions_) {
-        const dvec3 way = d.x * x + d.y * y + d.z * normal;
+    std::array<dvec3, rays> ways;
+    std::transform(directions_.begin(), directions_.end(), ways.begin(),
+                   [&](const dvec3& d) { return d.x * x + d.y * y + d.z * normal; });
+    const auto rises = [](const dvec3& way) { return way.y >= min_up; };
+    const auto rising = static_cast<std::size_t>(std::count_if(ways.begin(), ways.end(), rises));
+    const bool looks_up = rising >= min_rising;
+    std::size_t open = 0;
+    for (const dvec3& way : ways) {
         const double near_m = opaque_.nearest_hit_m({from, way, room_m});
         seen.room += std::min(near_m, room_m) / room_m / rays;
-        const bool rises = way.y >= min_up;
-        if (rises && near_m < room_m) continue;
-        const dvec3 up = rises ? way : glm::normalize(dvec3(way.x, min_up, way.z));
-        if (!opaque_.is_blocked({from, up, far_m_})) seen.sky += 1.0 / rays;
+        const bool up = rises(way);
+        if (up ? near_m < room_m : looks_up) continue;
+        const dvec3 to_sky = up ? way : glm::normalize(dvec3(way.x, min_up, way.z));
+        if (!opaque_.is_blocked({from, to_sky, far_m_})) ++open;
     }
+    seen.sky += static_cast<double>(open) / static_cast<double>(looks_up ? rising : rays);
 }
 
 std::vector<std::uint8_t> OpennessMaker::fill_unknown() {

@@ -1,6 +1,8 @@
 // One tree of what is opaque, and two rounds over the lit vertices.
 #include "render/bake/scene_light.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
@@ -13,9 +15,37 @@ namespace {
 
 const ForAll on_all_cores = [](std::size_t count, const std::function<void(std::size_t)>& body) { for_all(count, body); };
 
+/// How many materials glow where most triangles do; else 0. Then a program wrote its ambient light as emission, for which the
+/// light of rooms and sky stands. A scene of few materials may well glow.
+std::size_t ambient_materials(const importer::Scene& scene) {
+    constexpr std::size_t min_materials = 4;
+    std::uint64_t all = 0, glowing = 0;
+    const auto glows = [&](const importer::Primitive& p) {
+        const vec3& emission = scene.materials[p.material].emission;
+        return std::max({emission.r, emission.g, emission.b}) > 0;
+    };
+    std::vector<bool> used(scene.materials.size(), false);
+    for (const importer::Node& node : scene.nodes) {
+        if (node.mesh == importer::none) continue;
+        for (const importer::Primitive& p : scene.meshes[node.mesh].primitives) {
+            all += p.indices.size();
+            if (!glows(p)) continue;
+            glowing += p.indices.size();
+            used[p.material] = true;
+        }
+    }
+    const auto materials = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
+    return 2 * glowing > all && materials >= min_materials ? materials : 0;
+}
+
 /// By material of the model. Copies without the sun glow as what they are copies of.
-std::vector<vec3> emission_of(const importer::Scene& scene, const model::Model& model, const Openness& openness) {
+std::vector<vec3> emission_of(const importer::Scene& scene, model::Model& model, const Openness& openness) {
     std::vector<vec3> out(model.materials.size(), vec3(0));
+    if (const std::size_t count = ambient_materials(scene); count > 0) {
+        model.provenance.warnings.push_back(
+            fmt::format("{} materials glow, on most of the scene: that is taken for ambient light, and not used", count));
+        return out;
+    }
     for (std::size_t m = 0; m < scene.materials.size(); ++m) out[m] = scene.materials[m].emission;
     for (const auto& [copy, original] : openness.copies) out[copy] = out[original];
     return out;

@@ -299,6 +299,23 @@ TEST(BakedLight, IsTheSameForAnyNumberOfThreads) {
     EXPECT_FALSE(one.lamp_light.empty());
 }
 
+TEST(BakedLight, WhereMostGlowsThatIsNoGlow) {
+    for (const std::size_t materials : {3U, 4U}) {
+        importer::Scene scene;
+        for (std::size_t i = 0; i < materials; ++i) {
+            importer::Primitive p = lit::floor_of(1);
+            scene.materials.emplace_back().emission = vec3(0.3F);
+            p.material = static_cast<importer::Index>(i);
+            lit::put(scene, std::move(p), "plate", dvec3(0, static_cast<double>(i), 0));
+        }
+        const model::Model m = lit_bake(scene);
+        EXPECT_EQ(m.lamp_light.empty(), materials == 4);
+        const auto& warnings = m.provenance.warnings;
+        const std::string text = "4 materials glow, on most of the scene: that is taken for ambient light, and not used";
+        EXPECT_EQ(std::count(warnings.begin(), warnings.end(), text), materials == 4 ? 1 : 0);
+    }
+}
+
 TEST(BakedLight, StoppedMidwayLeavesTheModelWithoutIt) {
     importer::Scene scene = post_in_the_sun();
     scene.meshes[0].primitives[0] = lit::floor_of(15, 60);  // several tasks
