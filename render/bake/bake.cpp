@@ -399,6 +399,7 @@ void BakeContext::prepare_light() {
 bool BakeContext::measure_light() {
     if (!rays) return true;
     auto found = measure_scene_light(scene, *rays, model, progress);
+    rays.reset();
     if (found) light = std::move(*found);
     return found.has_value();
 }

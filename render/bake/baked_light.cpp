@@ -243,7 +243,7 @@ void LightMaker::put_lamps(BakedLight& found) {
     }
     if (found.lit == 0) return;
     model_.light.max_lamp_light = max_light;
-    model_.light.night_room_light = night_room_light;
+    if (!input_.lamps.empty()) model_.light.night_room_light = night_room_light;
     model_.lamp_light.assign(model_.vertices.size(), model::LampLight{});
     const auto byte = [&](float light) { return static_cast<std::uint8_t>(std::lround(255 * std::sqrt(light / max_light))); };
     for (std::size_t r = 0; r < ranges_.size(); ++r)

@@ -119,7 +119,10 @@ public:
         std::uint64_t left = std::max(triangles_ / 4, min_added);
         for (double length = max_round_m; length >= min_round_m && !stop(); length /= 2) {
             std::vector<std::vector<std::uint64_t>> keys(meshes_.size());
-            for_all_(meshes_.size(), [&](std::size_t i) { keys[i] = find_changes(meshes_[i], length); });
+            for_all_(meshes_.size(), [&](std::size_t i) {
+                if (!stop()) keys[i] = find_changes(meshes_[i], length);
+            });
+            if (stop()) break;
             Marks marks{{}, length};
             for (const auto& of_mesh : keys) marks.keys.insert(of_mesh.begin(), of_mesh.end());
             const std::uint64_t added = mark_edges(marks, left);

@@ -136,20 +136,8 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     return check_errors(gl_, "warming up " + renderer_, "Report this together with the driver's version");
 }
 
-/// Every combination of program, texture and culling in the model is drawn once: drivers compile on first use, and the frame
-/// may not pay for it. One triangle of each; what it shows does not matter.
-void GlDevice::warm_up() {
-    const model::EffectMask off = off_;
-    for (std::size_t variant = std::size_t{1} << options_.switches.size(); variant-- > 0;) {
-        hide_effects(mask_of_variant(variant));
-        warm_up_parts();
-    }
-    hide_effects(off);
-    warm_up_passes();
-    stats_ = {};
-}
-
-void GlDevice::warm_up_parts() {
+/// A part of each combination of program, texture and culling in the model.
+std::vector<GlDevice::Pending> GlDevice::one_of_each_state() const {
     std::vector<std::pair<State, Pending>> kinds;
     for (std::uint32_t r = 0; r < tables_.reps.size(); ++r) {
         const draw::DrawRep& rep = tables_.reps[r];
@@ -165,13 +153,38 @@ void GlDevice::warm_up_parts() {
     std::sort(kinds.begin(), kinds.end(), order);
     const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
     kinds.erase(std::unique(kinds.begin(), kinds.end(), same), kinds.end());
+    std::vector<Pending> out;
+    for (const auto& [state, pending] : kinds) out.push_back(pending);
+    return out;
+}
 
+/// Every combination of program, texture and culling is drawn once, with and without what can be switched: drivers compile on
+/// first use, and the frame may not pay for it. One triangle of each; what it shows does not matter.
+void GlDevice::warm_up() {
+    const model::EffectMask off = off_;
+    hide_effects(0);
+    const std::vector<Pending> kinds = one_of_each_state();
+    std::vector<model::EffectMask> done;
+    for (std::size_t variant = std::size_t{1} << options_.switches.size(); variant-- > 0;) {
+        const model::EffectMask hidden = mask_of_variant(variant);
+        if (std::find(done.begin(), done.end(), hidden) != done.end()) continue;
+        done.push_back(hidden);
+        hide_effects(hidden);
+        warm_up_parts(kinds);
+    }
+    hide_effects(off);
+    warm_up_passes();
+    stats_ = {};
+}
+
+void GlDevice::warm_up_parts(std::span<const Pending> kinds) {
     constexpr unsigned second = 2, smaller = 1;
     for (unsigned way = 4; way-- > 0;) {  // the filter of the first frame comes last
         if (((way & second) != 0 && !switches_filter()) || ((way & smaller) != 0 && !options_.smaller)) continue;
         set_filter((way & second) != 0 ? rt::TextureFilter::trilinear : filter());
         begin_frame(Pose{}, (way & smaller) != 0 ? model::resolution_steps.back() : 1.0F);
-        for (auto& [state, pending] : kinds) {
+        for (const Pending& pending : kinds) {
+            const State state = state_of(pending);
             if (used_instances_ >= frame_.instances.size()) break;
             set_blending(is_blended(tables_.parts[pending.part]));
             const std::uint32_t at = used_commands_;

@@ -82,7 +82,8 @@ private:
     std::vector<model::EffectMask> find_programs() REQUIRES(draws);
     [[nodiscard]] model::EffectMask mask_of_variant(std::size_t variant) const;
     void warm_up() REQUIRES(draws);
-    void warm_up_parts() REQUIRES(draws);
+    [[nodiscard]] std::vector<Pending> one_of_each_state() const REQUIRES(draws);
+    void warm_up_parts(std::span<const Pending> kinds) REQUIRES(draws);
     void warm_up_passes() REQUIRES(draws);
     void copy_to_window(const FittedPicture& fit, bool half_turn) REQUIRES(draws);
     void start_picture(const Pose& pose) REQUIRES(draws);

@@ -195,7 +195,8 @@ void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
     const draw::DrawRep& rep = tables_.reps[pending.rep];
     apply_depth_bias(tables_.depth_bias.ranks[tables_.depth_bias.first_of_rep[pending.rep] + pending.part - rep.first_part],
                      instance.rows);
-    instance.colour = part.captured ? darkened(part.colour, shown_light_.pictures) : part.colour;
+    const bool by_hour = part.captured && (off_ & model::effect_sun) == 0;
+    instance.colour = by_hour ? darkened(part.colour, shown_light_.pictures) : part.colour;
     instance.alpha_cutoff = part.alpha_cutoff;
     instance.two_sided = part.two_sided ? 1.0F : 0.0F;
     instance.texture_layer = part.texture_layer;

@@ -48,6 +48,9 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
     if (options.viewport.width == 0 || options.viewport.height == 0) {
         return Error{"viewport", "The viewport has no pixels", "Give a --size of at least 1x1", ErrorKind::misuse};
     }
+    if (options.switches.size() > max_switches)
+        return Error{"switches", "There are " + std::to_string(options.switches.size()) + " groups of effects to switch",
+                     "Give at most " + std::to_string(max_switches), ErrorKind::misuse};
     auto context = open_context(options);
     if (!context) return context.error();
     return GlDevice::make(std::move(*context), options);

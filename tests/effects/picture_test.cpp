@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -122,10 +123,12 @@ protected:
         options.viewport = {side, side};
         options.max_items = 256;
         options.filter = rt::TextureFilter::bilinear;
+        options.switches = switches();
         auto device = gl::open_device(options);
         if (!device) GTEST_SKIP() << device.error().text();
         device_ = std::move(*device);
     }
+    [[nodiscard]] virtual std::vector<EffectMask> switches() const { return {}; }
     void load(const model::Model& model, const gl::ProgramFactory& programs = effects::assemble_program) {
         device_->draws.plays();
         const auto loaded = device_->load(model, programs);
@@ -181,6 +184,14 @@ protected:
     std::unique_ptr<gl::Device> device_;
 };
 
+/// With the switches of a walk.
+class SwitchedPictures : public Pictures {
+protected:
+    [[nodiscard]] std::vector<EffectMask> switches() const override {
+        return {model::effect_sun | model::effect_shadow, model::effect_shadow, model::effect_lamps, model::effect_fog};
+    }
+};
+
 /// Every effect alone and with every other.
 std::vector<EffectMask> pairs() {
     std::vector<EffectMask> masks;
@@ -192,6 +203,43 @@ std::vector<EffectMask> pairs() {
 /// All materials have these effects, also where they make little sense together.
 model::Model uniform_scene(test::EffectScene scene, EffectMask mask) {
     return scene.build([&](model::Index) { return mask; });
+}
+
+TEST_P(SwitchedPictures, are_the_references_without_what_is_hidden) {
+    const model::Model model = scene_.build(test::EffectScene::own_effects);
+    load(model);
+    set_light(evening());
+    const dvec3 sky(model::usual_sky[0], model::usual_sky[1], model::usual_sky[2]);
+    std::set<EffectMask> programs;
+    for (const unsigned turn : {0U, 15U, 5U, 10U, 1U, 2U, 3U, 4U, 6U, 7U, 8U, 9U, 11U, 12U, 13U, 14U, 0U}) {
+        EffectMask hidden = 0;
+        for (std::size_t i = 0; i < switches().size(); ++i)
+            if ((turn >> i & 1U) != 0) hidden |= switches()[i];
+        model::Model without = model;
+        for (model::Material& material : without.materials) {
+            material.effects &= ~hidden;
+            programs.insert(material.effects);
+        }
+        reference::Light light = evening();
+        if ((hidden & model::effect_sun) != 0) light.pictures = dvec3(1);  // what was captured is not darkened either
+        device_->draws.plays();
+        device_->hide_effects(hidden);
+        std::vector<Difference> all;
+        for (const Pose& pose : scene_.poses())
+            all.push_back(compare(picture(model, pose), reference::draw({without, pose, {side, side}, sky, light}), 3));
+        expect_equal(all, ~hidden & ((1U << model::effect_count) - 1), " with the rest hidden");
+    }
+    EXPECT_EQ(device_->program_listing().size(), programs.size()) << "compiled in advance, and no other";
+}
+
+TEST_P(SwitchedPictures, are_refused_where_there_are_too_many_switches) {
+    gl::DeviceOptions options;
+    options.kind = GetParam();
+    options.viewport = {side, side};
+    options.switches.assign(gl::max_switches + 1, model::effect_sun);
+    const auto device = gl::open_device(options);
+    ASSERT_FALSE(device.ok());
+    EXPECT_EQ(device.error().kind, ErrorKind::misuse);
 }
 
 TEST_P(Pictures, of_every_effect_and_every_pair_are_the_references) {
@@ -272,6 +320,8 @@ TEST_P(Pictures, follow_the_moment_from_frame_to_frame_with_every_program) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Software, Pictures, ::testing::Values(BackendKind::egl, BackendKind::osmesa),
+                         [](const auto& kind) { return std::string(gl::backend_of(kind.param).name); });
+INSTANTIATE_TEST_SUITE_P(Software, SwitchedPictures, ::testing::Values(BackendKind::egl, BackendKind::osmesa),
                          [](const auto& kind) { return std::string(gl::backend_of(kind.param).name); });
 
 }  // namespace

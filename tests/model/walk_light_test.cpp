@@ -79,7 +79,8 @@ TEST_F(WalkLight, ComesBackWhereThereIsOnlyOneOfThem) {
     model.sun_seen.clear();
     expect_that_it_comes_back();
     model.lamp_light.clear();
-    for (const LightFacts& facts : {LightFacts{1}, {366, 90}, {172, -90}, {172, 50, 1e-6F}, {172, 50, 1, 0.5F}}) {
+    for (const LightFacts& facts :
+         {LightFacts{1}, {366, 90}, {172, -90}, {172, 50, 1e-6F}, {172, 50, 1, 0.5F}, {172, 50, 1, 0, 0.4F}}) {
         model.light = facts;
         expect_that_it_comes_back();
     }
