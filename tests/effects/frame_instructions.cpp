@@ -1,9 +1,9 @@
 // A program for callgrind: draws frames of one small scene on software GL, rasterised in this thread, and prints nothing else.
-// frame_instructions bare|plain|sun FRAMES: `plain` has no effects and Surefoot's programs; `bare` the same scene with a program
-// written here by hand, with nothing in it that an effect could have left behind; `sun` calls for an effect, to show that one
-// costs. Three frames warm up what is compiled late; then FRAMES run inside surefoot_counted_frame, which callgrind counts alone.
-// It is told when they begin, where valgrind's header was there: counting what comes before takes ten times as long as running
-// it.
+// frame_instructions bare|plain|sun|shadow FRAMES: `plain` has no effects and Surefoot's programs; `bare` the same scene with a
+// program written here by hand, with nothing in it that an effect could have left behind; `sun` calls for an effect, to show that
+// one costs; `shadow` for baked shadows too. Three frames warm up what is compiled late; then FRAMES run inside
+// surefoot_counted_frame, which callgrind counts alone. It is told when they begin, where valgrind's header was there: counting
+// what comes before takes ten times as long as running it.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -80,7 +80,17 @@ model::Model scene(model::EffectMask effects) {
         const int column = i % 8, row = i / 8 % 3, layer = i / 24;
         small.object(vertices, indices, material, test::at(-10.5 + 3 * column, -6 + 3 * row, -12.0 - 3 * layer));
     }
-    return small.finish();
+    model::Model model = small.finish();
+    if ((effects & model::effect_shadow) == 0) return model;
+    model.sun_seen.resize(model.vertices.size());
+    for (std::size_t v = 0; v < model.sun_seen.size(); ++v)
+        for (auto& share : model.sun_seen[v].share) share = static_cast<std::uint8_t>(v * 37 % 256);
+    return model;
+}
+
+model::EffectMask effects_of(std::string_view what) {
+    if (what == "sun") return model::effect_sun;
+    return what == "shadow" ? model::effect_sun | model::effect_shadow : model::EffectMask{0};
 }
 
 Pose looking_ahead() {
@@ -116,7 +126,7 @@ int fail(const Error& error) {
 }
 
 int run(std::string_view what, int frames) {
-    const model::Model model = scene(what == "sun" ? model::EffectMask{model::effect_sun} : model::EffectMask{0});
+    const model::Model model = scene(effects_of(what));
     gl::DeviceOptions options;
     options.kind = gl::BackendKind::egl;
     options.viewport = {320, 200};
@@ -145,8 +155,8 @@ int run(std::string_view what, int frames) {
 int main(int argc, char** argv) {
     const std::string_view what = argc == 3 ? argv[1] : "";
     const int frames = argc == 3 ? std::atoi(argv[2]) : 0;
-    if ((what != "bare" && what != "plain" && what != "sun") || frames < 1) {
-        std::fprintf(stderr, "frame_instructions bare|plain|sun FRAMES\n");
+    if ((what != "bare" && what != "plain" && what != "sun" && what != "shadow") || frames < 1) {
+        std::fprintf(stderr, "frame_instructions bare|plain|sun|shadow FRAMES\n");
         return 2;
     }
     return run(what, frames);
