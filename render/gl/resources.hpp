@@ -35,7 +35,7 @@ struct Resources {
     GLuint vertices = 0, indices = 0;
     GLuint sun_seen = 0, lamp_light = 0;  ///< 0: the model has none
     std::vector<GLuint> textures;         ///< in the order of TextureLayout::arrays
-    std::vector<Program> programs;        ///< in the order of DrawTables::masks
+    std::vector<Program> programs;        ///< in the order of DrawTables::masks, then their variants without switched effects
 };
 /// How everything is drawn. trilinear: else from the nearest mip level. samples: pixels have several.
 struct LoadOptions {

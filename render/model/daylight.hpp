@@ -42,7 +42,7 @@ struct Daylight {
     float sun_between = 0;                   ///< 0..1, from the first to the second of two moments of SunSeen
     float lamp_strength = 0;                 ///< of LampLight; 0: they are off
     float room_light = 1;                    ///< of the light of rooms that see no sky
-    float fog_density = 0;                   ///< light falls to 2^-(density * distance in m)
+    float fog_density = 0;                   ///< light falls to 2^-(density * depth along the view in m)
     vec3 background{1.0F};                   ///< factor of the colour behind everything, which is the fog's as well
     vec3 pictures{1.0F};                     ///< factor of what was captured in the light of the bake
     std::uint32_t sun_moment = 0;            ///< the first of two of SunSeen

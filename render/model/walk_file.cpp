@@ -1,7 +1,7 @@
 // The .walk file: header, payload pages, sections, section table. No offset is stored: each follows from the sizes before it.
 //
 //   header   magic, version, section count, file bytes, page bytes, table hash, header hash        56 bytes
-//   pages    vertices, indices, texels, each cut at 1 MiB and packed by zstd (or kept raw)
+//   pages    vertices, indices, texels, light of vertices, each cut at 1 MiB and packed by zstd (or kept raw)
 //   sections records of one kind each, in the table's order
 //   table    one entry a section: id, bytes, hash; ids that this program does not know are skipped
 #include "render/model/walk_file.hpp"

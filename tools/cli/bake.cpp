@@ -159,7 +159,9 @@ void add_bake(CLI::App& app, Context& context) {
         ->required();
     c->add_option("-o,--out", a->out, "The .walk model to write; an older file is replaced only when the new one is complete")
         ->required();
-    c->add_option("--quality", a->quality, "draft: at most one minute per million triangles; full: tighter error bounds")
+    c->add_option(
+         "--quality", a->quality,
+         "draft: at most one minute per million triangles; full: tighter error bounds, and light of sky, shadows and lamps")
         ->check(one_of(qualities))
         ->capture_default_str();
     c->add_option(
@@ -173,11 +175,11 @@ void add_bake(CLI::App& app, Context& context) {
                                 "Hour of the sun's own time, 12 is noon: where it shines from. Default: as the scene's distant "
                                 "light does, else from the south-east, 53 degrees high. North is -Z")
                       ->check(number_within(0, 24, "h"));
-    c->add_option("--sun-day", a->sun.day, "Day of the year for --sun-hour; 172 is 21 June")
+    c->add_option("--sun-day", a->sun.day, "Day of the year for --sun-hour and the hours of a walk; 172 is 21 June")
         ->check(number_within(1, 365, ""))
         ->capture_default_str()
         ->needs(a->sun_hour);
-    c->add_option("--latitude", a->sun.latitude_deg, "Degrees north of the equator for --sun-hour")
+    c->add_option("--latitude", a->sun.latitude_deg, "Degrees north of the equator for --sun-hour and the hours of a walk")
         ->check(number_within(-90, 90, "degrees"))
         ->capture_default_str()
         ->needs(a->sun_hour);

@@ -164,7 +164,7 @@ void add_light(CLI::App* c, const std::shared_ptr<SettingArguments>& a) {
     constexpr std::array<const char*, rt::switch_count> without = {
         "Colours as they are, without sun and sky light; key L of a window switches it, and the action sunlight of any device",
         "The sun everywhere, as if nothing hid it; switched by key J and the action shadows",
-        "No light of any lamp, nor of what glows; switched by key K and the action lamps",
+        "No light of any lamp, nor of what glows, by night with --hour; switched by key K and the action lamps",
         "What is far keeps its colours; switched by key H and the action fog",
     };
     for (std::size_t i = 0; i < without.size(); ++i)
