@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <span>
 #include <unordered_set>
@@ -22,12 +23,13 @@ namespace {
 constexpr std::size_t max_cut_places = 4;
 constexpr double max_round_m = 64, min_round_m = 1;  // edges of at least so much are cut, round by round
 constexpr float max_off = 0.12F;                     // of light: between the mean of the ends and what is there
-constexpr std::size_t sun_rays = 6;
+constexpr std::size_t sun_rays = 6, sky_rays = 8;
+constexpr double degree = std::numbers::pi / 180;
 constexpr std::uint64_t min_added = 20'000;
 constexpr double key_slack_m = 0.02;  // edges of one key differ less in length
 
-/// Shares of the sun's light at some moments, and the lamps' light.
-using LightSample = std::array<float, sun_rays + 1>;
+/// Shares of the sun's light at some moments, the lamps' light, and that of the sky.
+using LightSample = std::array<float, sun_rays + 2>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  ///< the lesser vertex first
 
 Edge edge_of(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
@@ -109,6 +111,10 @@ public:
         : scene_(scene), light_(light), for_all_(for_all) {
         find_meshes();
         directions_[0] = light.sun;
+        for (std::size_t i = 0; i < sky_rays; ++i) {
+            const double around = 2 * std::numbers::pi * static_cast<double>(i) / sky_rays, up = (i % 2 == 0 ? 20 : 55) * degree;
+            sky_[i] = {std::cos(up) * std::cos(around), std::sin(up), std::cos(up) * std::sin(around)};
+        }
         constexpr std::array<std::uint32_t, sun_rays - 1> at = {2, 5, 7, 9, 12};  // of the day's moments
         for (std::size_t i = 0; i < at.size(); ++i)
             directions_[1 + i] = model::towards_sun({model::hour_of_moment(at[i], light.facts.day, light.facts.latitude_deg),
@@ -152,6 +158,7 @@ private:
         return !material.unlit && material.alpha == model::AlphaMode::opaque && p.normals.size() == p.positions.size();
     }
     [[nodiscard]] LightSample light_at(const dvec3& at, const dvec3& normal) const;
+    [[nodiscard]] float sky_at(const dvec3& from, const dvec3& normal) const;
     [[nodiscard]] static bool is_off(const LightSample& is, const LightSample& mean) {
         for (std::size_t i = 0; i < is.size(); ++i)
             if (std::abs(is[i] - mean[i]) > max_off) return true;
@@ -180,7 +187,8 @@ private:
     const ForAll& for_all_;
     std::vector<CutMesh> meshes_;
     std::array<dvec3, sun_rays> directions_{};
-    std::uint64_t triangles_ = 0;  ///< of the scene, as often as they stand
+    std::array<dvec3, sky_rays> sky_{};  ///< all around, 20 and 55 degrees high in turns
+    std::uint64_t triangles_ = 0;        ///< of the scene, as often as they stand
     double far_m_ = 0;
 };
 
@@ -228,6 +236,17 @@ double Refiner::longest_edge_m(const importer::Mesh& mesh, const std::vector<dma
     return 1.0001 * stretch * std::sqrt(static_cast<double>(squared));
 }
 
+/// What openness makes of the sky that is seen: a little is enough, and none is a room.
+float Refiner::sky_at(const dvec3& from, const dvec3& normal) const {
+    int faced = 0, open = 0;
+    for (const dvec3& way : sky_) {
+        if (glm::dot(normal, way) < 0.05) continue;
+        ++faced;
+        open += light_.opaque->is_blocked({from, way, far_m_}) ? 0 : 1;
+    }
+    return faced > 0 ? 0.4F * std::min(1.0F, 4.0F * static_cast<float>(open) / static_cast<float>(faced)) : 0.0F;
+}
+
 LightSample Refiner::light_at(const dvec3& at, const dvec3& normal) const {
     LightSample out{};
     const dvec3 from = at + ray_lift_m * normal;
@@ -242,6 +261,7 @@ LightSample Refiner::light_at(const dvec3& at, const dvec3& normal) const {
         const vec3 shown = shown_light(light_.lamps->lux_at(at, normal));
         out[sun_rays] = (shown.r + shown.g + shown.b) / 3;
     }
+    out[sun_rays + 1] = sky_at(from, normal);
     return out;
 }
 

@@ -154,6 +154,7 @@ std::vector<GlDevice::Pending> GlDevice::one_of_each_state() const {
     const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
     kinds.erase(std::unique(kinds.begin(), kinds.end(), same), kinds.end());
     std::vector<Pending> out;
+    out.reserve(kinds.size());
     for (const auto& [state, pending] : kinds) out.push_back(pending);
     return out;
 }

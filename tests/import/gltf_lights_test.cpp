@@ -327,7 +327,7 @@ TEST(GltfEmission, FaultsAreNamedAndMended) {
 TEST(GltfEmission, WhatAnImageSpreadsIsLeftOutAndNamedOnce) {
     TriangleGltf gltf = with_material(R"("emissiveFactor":[1,1,1],"emissiveTexture":{"index":0})");
     gltf.more.insert(
-        gltf.more.find("]", gltf.more.find("\"index\"")),
+        gltf.more.find(']', gltf.more.find("\"index\"")),
         R"(,{"name":"n","emissiveFactor":[1,1,1],"emissiveTexture":{"index":0}},{"name":"o","emissiveTexture":{"index":0}})");
     const Scene scene = import_good(gltf);
     EXPECT_EQ(scene.materials[0].emission, vec3(0)) << "a picture that is dark but for a few lights is the usual one";
