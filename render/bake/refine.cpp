@@ -24,7 +24,7 @@ constexpr std::size_t max_cut_places = 4;
 constexpr double max_round_m = 64, min_round_m = 1;  // edges of at least so much are cut, round by round
 constexpr float max_off = 0.12F;                     // of light: between the mean of the ends and what is there
 constexpr std::size_t sun_rays = 6, sky_rays = 8;
-constexpr double degree = std::numbers::pi / 180;
+constexpr double one_degree = std::numbers::pi / 180;
 constexpr std::uint64_t min_added = 20'000;
 constexpr double key_slack_m = 0.02;  // edges of one key differ less in length
 
@@ -112,7 +112,8 @@ public:
         find_meshes();
         directions_[0] = light.sun;
         for (std::size_t i = 0; i < sky_rays; ++i) {
-            const double around = 2 * std::numbers::pi * static_cast<double>(i) / sky_rays, up = (i % 2 == 0 ? 20 : 55) * degree;
+            const double around = 2 * std::numbers::pi * static_cast<double>(i) / sky_rays,
+                         up = (i % 2 == 0 ? 20 : 55) * one_degree;
             sky_[i] = {std::cos(up) * std::cos(around), std::sin(up), std::cos(up) * std::sin(around)};
         }
         constexpr std::array<std::uint32_t, sun_rays - 1> at = {2, 5, 7, 9, 12};  // of the day's moments

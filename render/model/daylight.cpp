@@ -9,7 +9,7 @@ namespace surefoot::model {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+constexpr double one_degree = std::numbers::pi / 180;
 constexpr float half_contrasts = 4.3219281F;  // log2(20): what is left at the visibility is 5 %
 
 float smooth(double from, double to, double value) {
@@ -19,14 +19,14 @@ float smooth(double from, double to, double value) {
 
 /// Hours from noon to sunset; 12 where the sun never sets, or never rises.
 double half_day_h(double day, double latitude_deg) {
-    const double declination = 23.45 * degree * std::sin(2 * std::numbers::pi * (284 + day) / 365);
-    const double cosine = -std::tan(latitude_deg * degree) * std::tan(declination);
-    return std::abs(cosine) < 1 ? std::acos(cosine) / (15 * degree) : 12.0;
+    const double declination = 23.45 * one_degree * std::sin(2 * std::numbers::pi * (284 + day) / 365);
+    const double cosine = -std::tan(latitude_deg * one_degree) * std::tan(declination);
+    return std::abs(cosine) < 1 ? std::acos(cosine) / (15 * one_degree) : 12.0;
 }
 
 /// What the sun's height makes of the usual light.
 void set_by_height(Daylight& light) {
-    const double height_deg = std::asin(std::clamp(static_cast<double>(light.sun_direction.y), -1.0, 1.0)) / degree;
+    const double height_deg = std::asin(std::clamp(static_cast<double>(light.sun_direction.y), -1.0, 1.0)) / one_degree;
     const float day = smooth(-8, 12, height_deg), sun = smooth(-1, 12, height_deg), low = 1 - smooth(2, 20, height_deg);
     const vec3 night_ground(0.07F, 0.072F, 0.074F), night_sky(0.11F, 0.12F, 0.15F);
     light.sun_light *= sun * vec3(1.0F, 1.0F - 0.25F * low, 1.0F - 0.5F * low);

@@ -103,7 +103,7 @@ TEST(SunWalk, AnHourThatRunsNeedsNoMemoryOnTheRealClock) {
         EXPECT_EQ(r.guard_violations, 0U);
         hours.insert(r.light.hour);
     }
-    EXPECT_GT(hours.size(), 20U);
+    EXPECT_GT(2 * hours.size(), outcome.records.size()) << "an hour a frame, but for those that were skipped";
     EXPECT_LT(outcome.records.back().light.hour, 12) << "past midnight";
 }
 
