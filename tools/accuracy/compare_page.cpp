@@ -22,7 +22,7 @@ struct Shown {
     bool log;
 };
 
-constexpr std::array<Shown, 3> shown = {{
+constexpr std::array<Shown, 3> charted = {{
     {"Triangles", "", [](const report::PictureFigures& p) { return static_cast<double>(p.triangles); }, false},
     {"Accuracy, rad⁻¹", "", [](const report::PictureFigures& p) { return static_cast<double>(p.accuracy); }, true},
     {"SNR, dB", "", [](const report::PictureFigures& p) { return p.snr_db; }, false},
@@ -54,7 +54,7 @@ std::string chart_file_of(const Comparison& c) {
     std::string charts;
     double y = 8;
     for (const ComparedSelector& s : c.selectors)
-        for (const Shown& what : shown) {
+        for (const Shown& what : charted) {
             const std::string chart = chart_of(s, what, c.rate_hz);
             charts += report::text_at(
                 10, y + 14, "note",
@@ -76,7 +76,7 @@ std::string body_of(const Comparison& c) {
         report::escaped(c.model), c.pictures, c.width, c.height, c.rate_hz, budget_text(c));
     for (const ComparedSelector& s : c.selectors) {
         out += fmt::format("<h2>{}</h2>\n", report::escaped(s.selector));
-        for (const Shown& what : shown) {
+        for (const Shown& what : charted) {
             const std::string chart = chart_of(s, what, c.rate_hz);
             out += chart.empty() ? fmt::format("<p>{}: every picture equals full detail.</p>\n", what.label)
                                  : fmt::format("<h3>{}</h3>\n{}", what.label, chart);

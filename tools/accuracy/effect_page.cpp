@@ -17,7 +17,7 @@ namespace surefoot::accuracy {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using EffectJson = nlohmann::ordered_json;
 
 constexpr std::string_view words = "<td style=\"text-align:left\">";  // of a cell; figures stand at its right
 
@@ -149,26 +149,26 @@ std::string body_of(const EffectReport& r) {
                              report::escaped(r.machine));
 }
 
-Json json_of(const WithAndWithout& w) {
+EffectJson json_of(const WithAndWithout& w) {
     return {{"with_ms", w.with_ms},
             {"without_ms", w.without_ms},
-            {"psnr_db", w.psnr_db < report::max_psnr_db ? Json(w.psnr_db) : Json(nullptr)},
+            {"psnr_db", w.psnr_db < report::max_psnr_db ? EffectJson(w.psnr_db) : EffectJson(nullptr)},
             {"flip", w.flip}};
 }
 
-Json json_of(const Way& way, bool compared) {
+EffectJson json_of(const Way& way, bool compared) {
     const PictureDifference& d = way.difference;
     return {{"ms", way.ms},
-            {"psnr_db", compared && d.psnr_db < report::max_psnr_db ? Json(d.psnr_db) : Json(nullptr)},
-            {"flip", compared ? Json(d.flip) : Json(nullptr)},
+            {"psnr_db", compared && d.psnr_db < report::max_psnr_db ? EffectJson(d.psnr_db) : EffectJson(nullptr)},
+            {"flip", compared ? EffectJson(d.flip) : EffectJson(nullptr)},
             {"programs", way.programs},
             {"batches_per_frame", way.batches},
             {"state_changes_per_frame", way.state_changes},
             {"draws_per_frame", way.draws}};
 }
 
-Json json_of(const ThreeWays& w) {
-    Json spread = Json::array();
+EffectJson json_of(const ThreeWays& w) {
+    EffectJson spread = EffectJson::array();
     for (const SpreadEffect& e : w.spread.effects)
         spread.push_back({{"effect", e.name},
                           {"triangles", e.triangles},
@@ -181,8 +181,8 @@ Json json_of(const ThreeWays& w) {
             {"all_on_effects", spread}};
 }
 
-Json json_of(const std::vector<Holder>& where) {
-    Json out = Json::array();
+EffectJson json_of(const std::vector<Holder>& where) {
+    EffectJson out = EffectJson::array();
     for (const Holder& h : where) out.push_back({{"name", h.name}, {"objects", h.objects}, {"triangles_share", h.share}});
     return out;
 }
@@ -190,7 +190,7 @@ Json json_of(const std::vector<Holder>& where) {
 }  // namespace
 
 std::string effects_json(const EffectReport& r) {
-    Json effects = Json::array();
+    EffectJson effects = EffectJson::array();
     for (const EffectWorth& e : r.effects)
         effects.push_back({{"effect", e.name},
                            {"what", e.help},
@@ -204,15 +204,15 @@ std::string effects_json(const EffectReport& r) {
                            {"walked_frames_share", e.walked_frames_share},
                            {"walked_triangles_share", e.walked_triangles_share},
                            {"where", json_of(e.where)},
-                           {"worth", e.shown_at > 0 ? json_of(e.worth) : Json(nullptr)}});
-    const Json json = {{"model", r.model},           {"path", r.path},
-                       {"renderer", r.renderer},     {"machine", r.machine},
-                       {"width", r.width},           {"height", r.height},
-                       {"poses", r.poses},           {"hour", r.hour < 0 ? Json(nullptr) : Json(r.hour)},
-                       {"use_frames", r.use_frames}, {"walked_rate_hz", walked_rate_hz},
-                       {"effects", effects},         {"bare", json_of(r.bare)},
-                       {"ways", json_of(r.ways)}};
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+                           {"worth", e.shown_at > 0 ? json_of(e.worth) : EffectJson(nullptr)}});
+    const EffectJson json = {{"model", r.model},           {"path", r.path},
+                             {"renderer", r.renderer},     {"machine", r.machine},
+                             {"width", r.width},           {"height", r.height},
+                             {"poses", r.poses},           {"hour", r.hour < 0 ? EffectJson(nullptr) : EffectJson(r.hour)},
+                             {"use_frames", r.use_frames}, {"walked_rate_hz", walked_rate_hz},
+                             {"effects", effects},         {"bare", json_of(r.bare)},
+                             {"ways", json_of(r.ways)}};
+    return json.dump(2, ' ', false, EffectJson::error_handler_t::replace) + "\n";
 }
 
 Result<void> probe_effects_page(const std::string& dir) { return FileSet::probe(dir, {"effects.json", "index.html"}); }
