@@ -23,12 +23,6 @@ constexpr float max_glow = 16;              // of what glows on a dark surface
 constexpr float min_base = 0.05F;           // of a colour that a glow is divided by
 constexpr model::EffectMask has_light = model::effect_sun | model::effect_openness;
 
-model::SunSeen seen_always() {
-    model::SunSeen all{};
-    std::fill(std::begin(all.share), std::end(all.share), std::uint8_t{255});
-    return all;
-}
-
 float encoded(float linear) { return std::pow(std::clamp(linear, 0.0F, 1.0F), 1 / 2.2F); }
 
 /// What one range of vertices gets: from the sun, and on both sides from lamps.
@@ -90,7 +84,7 @@ void LightMaker::begin(std::size_t r) {
     RangeLight& light = light_[r];
     light.starts = ray_starts(model_, range);
     light.in_sun.assign(range.count, false);
-    light.sun.assign(range.count, seen_always());
+    light.sun.assign(range.count, model::always_in_sun);
     light.before.assign(range.count, vec3(0));
     light.behind.assign(range.count, vec3(0));
     for (const model::Index p : range.parts) {
@@ -201,7 +195,7 @@ void LightMaker::give_effect(model::EffectMask needed, model::EffectMask given, 
 }
 
 void LightMaker::put_shadow(BakedLight& found) {
-    const model::SunSeen all = seen_always();
+    const model::SunSeen& all = model::always_in_sun;
     std::vector<bool> shaded(model_.materials.size(), false);
     for (std::size_t r = 0; r < ranges_.size(); ++r) {
         const RangeLight& light = light_[r];

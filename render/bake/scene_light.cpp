@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
 #include "render/bake/ground.hpp"
 #include "render/bake/stage.hpp"
@@ -83,9 +82,7 @@ std::optional<SceneLight> measure_scene_light(const importer::Scene& scene, cons
 }
 
 void fill_scene_light(model::Model& model) {
-    model::SunSeen all{};
-    std::fill(std::begin(all.share), std::end(all.share), std::uint8_t{255});
-    if (!model.sun_seen.empty()) model.sun_seen.resize(model.vertices.size(), all);
+    if (!model.sun_seen.empty()) model.sun_seen.resize(model.vertices.size(), model::always_in_sun);
     if (!model.lamp_light.empty()) model.lamp_light.resize(model.vertices.size());
 }
 

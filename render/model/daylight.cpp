@@ -17,13 +17,6 @@ float smooth(double from, double to, double value) {
     return static_cast<float>(t * t * (3 - 2 * t));
 }
 
-/// Hours from noon to sunset; 12 where the sun never sets, or never rises.
-double half_day_h(double day, double latitude_deg) {
-    const double declination = 23.45 * one_degree * std::sin(2 * std::numbers::pi * (284 + day) / 365);
-    const double cosine = -std::tan(latitude_deg * one_degree) * std::tan(declination);
-    return std::abs(cosine) < 1 ? std::acos(cosine) / (15 * one_degree) : 12.0;
-}
-
 /// What the sun's height makes of the usual light.
 void set_by_height(Daylight& light) {
     const double height_deg = std::asin(std::clamp(static_cast<double>(light.sun_direction.y), -1.0, 1.0)) / one_degree;

@@ -16,6 +16,7 @@ struct SunSeen {
     std::uint8_t share[16];
 };
 static_assert(sizeof(SunSeen) == 16);
+inline constexpr SunSeen always_in_sun = {{255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255}};
 
 /// Light of lamps at a vertex, before and behind its surface: RGB, 255 * sqrt(light / LightFacts::max_lamp_light); the last
 /// byte is zero. Beside Vertex, only in models that call for effect_lamps.

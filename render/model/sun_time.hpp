@@ -15,5 +15,7 @@ struct SunTime {
 
 /// Unit, towards the sun. +Y is up, -Z is north, +X is east. y <= 0: it is below the horizon.
 dvec3 towards_sun(const SunTime& time);
+/// Hours from noon to sunset; 12 where the sun does not set, or does not rise.
+double half_day_h(double day, double latitude_deg);
 
 }  // namespace surefoot::model

@@ -199,6 +199,7 @@ TEST(BakedLight, GlowIsDividedByTheColourAndCountsOnceForAllLevels) {
         if (node.child_count == 0) levels = std::max<std::size_t>(levels, node.rep_count);
     ASSERT_GT(levels, 2U) << "they share vertices";
     EXPECT_FLOAT_EQ(m.light.max_lamp_light, 16) << "blue is limited";
+    EXPECT_EQ(m.light.night_room_light, 1) << "what glows is no lamp of a room";
     for (const Seen& v : vertices_of(m, "ball"))
         for (const std::uint8_t* side : {m.lamp_light[v.vertex].before, m.lamp_light[v.vertex].behind}) {
             EXPECT_NEAR(light_of(m, side).r, std::pow(0.2F, 1 / 2.2F) / 0.5F, 0.03);
@@ -297,6 +298,7 @@ TEST(BakedLight, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(one.light, four.light);
     EXPECT_FALSE(one.sun_seen.empty());
     EXPECT_FALSE(one.lamp_light.empty());
+    EXPECT_FLOAT_EQ(one.light.night_room_light, 0.4F) << "lamps of its own";
 }
 
 TEST(BakedLight, WhereMostGlowsThatIsNoGlow) {

@@ -24,7 +24,7 @@ constexpr int hour_steps = 30;
 /// The hour at a time of the walk, in steps, from 0 to below 24. rt::no_hour where the settings have none.
 float hour_at(const config::Settings& settings, double walk_s);
 
-/// Draws the next pictures in this light. Between pictures, on the thread that draws.
+/// Draws the next pictures in this light. Without an hour, the light of before stays. Between pictures, on the thread that draws.
 void show_light(Engine& engine, const rt::ShownLight& light);
 
 }  // namespace surefoot::walk
