@@ -163,6 +163,7 @@ picture_scene() { # NAME SCENE PATH LIFT
     candela | ravenbridge | cocoa) promise=picture_gain_$1 ;;
     "candela, forms" | "ravenbridge, forms") promise=picture_forms_houses ;;
     "cocoa, forms" | "forest, forms") promise=picture_forms_$1 ;;
+    *", forms") promise=picture_forms_others ;;
   esac
   keep_difference "$promise" "$1" new old
   keep picture_db "$(read -ra all <<<"${db[new]}"; middle_of "${all[@]}")" --scene "$1"
@@ -173,7 +174,7 @@ picture_scene() { # NAME SCENE PATH LIFT
     case $pass in
       new-not-fitted) keep_difference picture_not_fitted "$1" new new-not-fitted ;;
       new-loaded) keep_difference picture_loaded "$1" new new-loaded ;;
-      new-half) keep_difference picture_half "$1" new-half old-half "at the whole period, half of it here" ;;
+      new-half) keep_difference "picture${picture_forms:+_forms}_half" "$1" new-half old-half "at the whole period, half of it here" ;;
     esac
   done
 }
