@@ -87,6 +87,43 @@ Check check_placements(const Model& m) {
         const float det = glm::determinant(p.linear);
         if (!finite(p.origin) || !std::isfinite(det) || det == 0.0F)
             return wrong("placements", i, "The placement is not finite, or is flat");
+        if (p.motion != none && p.motion >= m.motions.size()) return wrong("placements", i, "The motion is out of range");
+    }
+    return {};
+}
+
+Check check_keys(const Model& m, std::size_t i) {
+    const Motion& motion = m.motions[i];
+    double before = 0;
+    for (std::uint32_t k = motion.first_key; k < motion.first_key + motion.key_count; ++k) {
+        const MotionKey& key = m.motion_keys[k];
+        const auto& q = key.rotation;
+        const float length2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        if (!finite(key.translation) || !(std::abs(length2 - 1.0F) < 1e-3F))
+            return wrong("motion_keys", k, "The pose is not finite, or its rotation is no unit quaternion");
+        if (!(key.time_s >= before) || (k == motion.first_key && key.time_s != 0))
+            return wrong("motion_keys", k, "The times do not begin at 0, or fall");
+        before = key.time_s;
+    }
+    if (motion.key_count > 1 && before != motion.period_s) return wrong("motions", i, "The last key is not at the period");
+    return {};
+}
+
+Check check_motions(const Model& m) {
+    if (m.motions.size() > max_motions || m.motion_keys.size() > max_motion_keys)
+        return Error{"motions", "The motions or their keys are too many", "Bake the model again", ErrorKind::damaged};
+    std::vector<std::uint32_t> depth(m.motions.size(), 1);
+    for (std::size_t i = 0; i < m.motions.size(); ++i) {
+        const Motion& motion = m.motions[i];
+        if (!finite(motion.pivot)) return wrong("motions", i, "The pivot is not finite");
+        if (!(motion.period_s >= min_period_s && motion.period_s <= max_period_s))
+            return wrong("motions", i, "The period is out of range");
+        if (motion.key_count == 0 || !in_range(motion.first_key, motion.key_count, m.motion_keys.size()))
+            return wrong("motions", i, "The keys are out of range");
+        if (motion.outer != none && motion.outer >= i) return wrong("motions", i, "What carries it does not come before it");
+        if (motion.outer != none) depth[i] = depth[motion.outer] + 1;
+        if (depth[i] > max_motion_depth) return wrong("motions", i, "Too many motions carry each other");
+        if (Check keys = check_keys(m, i); !keys) return keys;
     }
     return {};
 }
@@ -163,6 +200,10 @@ Check check_node_reps(const Model& m, std::size_t i) {
         const bool whole = coarser.error_m <= max_trimmed_error_m;  // cut masks have more triangles than full detail
         if (meshes && !whole && rep.triangles < coarser.triangles)
             return wrong("nodes", i, "The triangle counts of the meshes fall");
+    }
+    for (std::uint32_t k = 0; k < node.rep_count; ++k) {
+        if (m.placements[m.reps[node.first_rep + k].placement].motion != motion_of(m, node))
+            return wrong("nodes", i, "The forms do not move alike");
     }
     if (!everywhere) return wrong("nodes", i, "No form is valid from everywhere");
     if (node.child_count == 0 && !m.reps[node.first_rep + node.rep_count - 1].everywhere) {
@@ -274,8 +315,8 @@ EffectMask Model::called_for() const {
 
 Result<void> validate(const Model& model) {
     if (auto fits = check_limits(counts_of(model), "model"); !fits) return fits;
-    for (const auto check : {check_textures, check_materials, check_parts, check_placements, check_reps, check_losses, check_tree,
-                             check_group_losses, check_rest, check_ground, check_tour}) {
+    for (const auto check : {check_textures, check_materials, check_parts, check_motions, check_placements, check_reps,
+                             check_losses, check_tree, check_group_losses, check_rest, check_ground, check_tour}) {
         if (Check result = check(model); !result) return result;
     }
     return {};

@@ -11,6 +11,7 @@
 #include "render/model/daylight.hpp"
 #include "render/model/effects.hpp"
 #include "render/model/ground.hpp"
+#include "render/model/motion.hpp"
 #include "render/model/picture_loss.hpp"
 #include "rt/base/geometry.hpp"
 #include "rt/base/named.hpp"
@@ -38,7 +39,8 @@ static_assert(sizeof(Vertex) == 32);
 /// world = origin + linear * v. det(linear) < 0: mirrored. Shared by all representations of one placed object.
 struct Placement {
     dvec3 origin{0.0};
-    mat3 linear{1.0F};  ///< column-major; |det| > 0
+    mat3 linear{1.0F};    ///< column-major; |det| > 0
+    Index motion = none;  ///< in Model::motions: what it is moved by from where it stands at rest; none: it stands still
 };
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
@@ -91,7 +93,7 @@ constexpr std::string_view name_of(NodeKind kind) { return node_kinds[static_cas
 
 /// A node of the hierarchy. Children are contiguous and come after their parent; node 0 is the root.
 struct Node {
-    Box box;  ///< world, of the full detail below
+    Box box;  ///< world, of the full detail below, at all times where it moves
     Index parent = none;
     Index first_child = none;
     std::uint32_t child_count = 0;  ///< 0: a leaf; its finest representation is the full detail
@@ -132,6 +134,8 @@ struct Model {
     ColourSpread colours;                   ///< of what the leaves show, as measured with the losses
     std::vector<Part> parts;
     std::vector<Placement> placements;
+    std::vector<Motion> motions;  ///< empty where nothing moves
+    std::vector<MotionKey> motion_keys;
     std::vector<Material> materials;
     std::vector<Texture> textures;
     std::vector<Vertex> vertices;
@@ -153,6 +157,11 @@ struct Model {
     [[nodiscard]] EffectMask called_for() const;  ///< union of the findings
     [[nodiscard]] std::uint64_t triangles() const { return nodes.empty() ? 0 : nodes[0].triangles; }
 };
+
+/// The motion of a node's forms, which all move alike; none: they stand still. Children of a still node may move.
+inline Index motion_of(const Model& model, const Node& node) {
+    return model.motions.empty() ? none : model.placements[model.reps[node.first_rep].placement].motion;
+}
 
 /// Checks every index, range, order and number on which the renderer relies. Errors name array and element.
 /// Run on every model that comes from a file.

@@ -130,6 +130,30 @@ void fields(Archive& a, PlacementT& p) {
     for (int column = 0; column < 3; ++column) vector3(a, p.linear[column]);
 }
 
+template <class Archive, class KeyT>
+requires std::is_same_v<std::remove_const_t<KeyT>, MotionKey>
+void fields(Archive& a, KeyT& k) {
+    a(k.time_s);
+    vector3(a, k.translation);
+    for (auto& component : k.rotation) a(component);
+}
+
+template <class Archive, class MotionT>
+requires std::is_same_v<std::remove_const_t<MotionT>, Motion>
+void fields(Archive& a, MotionT& m) {
+    vector3(a, m.pivot);
+    a(m.first_key), a(m.key_count), a(m.period_s), a(m.outer);
+}
+
+/// A placement that moves. Sections of placements hold none, so that files without motion stay as they were.
+struct MovingPlacement {
+    Index placement = none, motion = none;
+};
+
+template <class Archive, class MovingT>
+requires std::is_same_v<std::remove_const_t<MovingT>, MovingPlacement>
+void fields(Archive& a, MovingT& m) { a(m.placement), a(m.motion); }
+
 template <class Archive, class MaterialT>
 requires std::is_same_v<std::remove_const_t<MaterialT>, Material>
 void fields(Archive& a, MaterialT& m) {

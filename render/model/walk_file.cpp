@@ -51,15 +51,16 @@ enum Section : std::uint32_t {
     ground_section,
     tour_section,
     light_section,
+    motion_section,
     section_count
 };
 constexpr std::array<std::string_view, section_count> section_names = {
     "pages",   "nodes",      "representations", "parts",  "placements", "materials", "textures",
-    "effects", "provenance", "losses",          "ground", "tour",       "light"};
+    "effects", "provenance", "losses",          "ground", "tour",       "light",     "motion"};
 /// No model is valid without them; any other that a file has not got is empty.
 constexpr bool required(std::uint32_t section) {
     return section != textures_section && section != losses_section && section != ground_section && section != tour_section &&
-           section != light_section;
+           section != light_section && section != motion_section;
 }
 
 struct PageEntry {
@@ -116,6 +117,13 @@ std::vector<EffectFinding> looked_for(const std::vector<EffectFinding>& findings
     return out;
 }
 
+std::vector<walk::MovingPlacement> moving_placements(const Model& m) {
+    std::vector<walk::MovingPlacement> moving;
+    for (Index p = 0; p < m.placements.size(); ++p)
+        if (m.placements[p].motion != none) moving.push_back({p, m.placements[p].motion});
+    return moving;
+}
+
 std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, const PayloadSizes& sizes,
                                      const std::vector<PageEntry>& pages) {
     walk::PutArchive put;
@@ -158,6 +166,9 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
             break;
         case light_section:
             walk::fields(put, m.light);
+            break;
+        case motion_section:
+            put.list(m.motions), put.list(m.motion_keys), put.list(moving_placements(m));
             break;
         default:
             walk::rest(put, m);
@@ -216,7 +227,7 @@ Result<void> open_sections(Reading& in, std::span<const std::byte> table, std::s
     for (std::uint32_t id = 0; id < section_count; ++id) {
         if (required(id) && !in.sections[id]) return in.error(section_names[id], "The section is missing");
         const bool drawn = id != rest_section && id != losses_section && id != ground_section && id != tour_section;
-        const bool newer = id == light_section && !in.sections[id];  // files without it keep the hash that they had
+        const bool newer = id >= light_section && !in.sections[id];  // files without it keep the hash that they had
         if (drawn && !newer) in.model_hash = fnv1a(in.model_hash, hashes[id]);
     }
     return {};
@@ -251,6 +262,20 @@ Result<void> open_header(Reading& in) {
     if (hash_bytes(table) != table_hash) return in.error("section table", "The checksum does not match: the file is damaged");
     in.pages = in.bytes.subspan(header_bytes, pages_size);
     return open_sections(in, table, in.bytes.subspan(header_bytes + pages_size, room - table_size - pages_size));
+}
+
+/// False: a placement is not there, or named out of order.
+bool take_moving(walk::TakeArchive& take, Model& m) {
+    take.list(m.motions), take.list(m.motion_keys);
+    std::vector<walk::MovingPlacement> moving;
+    take.list(moving);
+    Index next = 0;
+    for (const walk::MovingPlacement& one : moving) {
+        if (take.failed() || one.placement < next || one.placement >= m.placements.size()) return false;
+        m.placements[one.placement].motion = one.motion;
+        next = one.placement + 1;
+    }
+    return true;
 }
 
 Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, PayloadSizes& sizes,
@@ -299,6 +324,9 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
             break;
         case light_section:
             walk::fields(take, m.light);
+            break;
+        case motion_section:
+            if (!take_moving(take, m)) return in.error(section_names[section], "A placement is out of range, or out of order");
             break;
         default:
             walk::rest(take, m);
@@ -385,6 +413,7 @@ Result<WalkFileInfo> write_walk(const std::string& file, const Model& model) {
         if (section == ground_section && model.ground.empty()) continue;
         if (section == tour_section && model.tour.samples.empty()) continue;
         if (section == light_section && model.light == LightFacts{}) continue;
+        if (section == motion_section && model.motions.empty()) continue;
         const auto bytes = section_bytes(section, model, sizes, pages);
         table(section), table(static_cast<std::uint64_t>(bytes.size())), table(hash_bytes(bytes));
         if (auto written = out.write(bytes); !written) return written.error();

@@ -1,0 +1,135 @@
+// Motions by their keys: the pose at a time, and bounds that hold between keys as well.
+#include "render/model/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "render/model/model.hpp"
+
+namespace surefoot::model {
+
+namespace {
+
+/// Arcs are cut into chords of this turn at most, for bounds. A point 1 m from its pivot leaves such a chord by 0.3 mm.
+constexpr double chord_rad = 0.05;
+
+std::span<const MotionKey> keys_of(const Model& model, const Motion& motion) {
+    return std::span(model.motion_keys).subspan(motion.first_key, motion.key_count);
+}
+
+dquat quat_of(const MotionKey& key) {
+    const dquat q(key.rotation[3], key.rotation[0], key.rotation[1], key.rotation[2]);
+    return glm::normalize(q);
+}
+
+/// `share`: 0 at the first key, 1 at the second.
+RigidPose between_keys(const dvec3& pivot, const MotionKey& a, const MotionKey& b, double share) {
+    return {pivot, glm::mix(a.translation, b.translation, share), glm::slerp(quat_of(a), quat_of(b), share)};
+}
+
+/// Angle from one rotation to another by the shorter arc, 0 to pi.
+double turn_between(const dquat& a, const dquat& b) {
+    const dquat d = b * glm::conjugate(a);
+    return 2 * std::atan2(glm::length(dvec3(d.x, d.y, d.z)), std::abs(d.w));
+}
+
+/// Of the motion alone, without those that carry it.
+RigidPose own_pose(const Model& model, const Motion& motion, double time_s) {
+    const std::span<const MotionKey> keys = keys_of(model, motion);
+    double at = std::isfinite(time_s) ? std::fmod(time_s, motion.period_s) : 0.0;
+    if (at < 0) at += motion.period_s;
+    const auto after = std::upper_bound(keys.begin(), keys.end(), at, [](double t, const MotionKey& k) { return t < k.time_s; });
+    if (after == keys.begin()) return between_keys(motion.pivot, keys.front(), keys.front(), 0);
+    if (after == keys.end()) return between_keys(motion.pivot, keys.back(), keys.back(), 0);
+    const MotionKey& from = *(after - 1);
+    return between_keys(motion.pivot, from, *after, (at - from.time_s) / (after->time_s - from.time_s));
+}
+
+/// The inner pose, carried by the outer one.
+RigidPose composed(const RigidPose& outer, const RigidPose& inner) {
+    return {inner.pivot, outer(inner.pivot + inner.translation) - inner.pivot, outer.rotation * inner.rotation};
+}
+
+template <class Use>
+void for_corners(const Box& box, Use use) {
+    for (unsigned c = 0; c < 8; ++c)
+        use(dvec3((c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y,
+                  (c & 4U) != 0 ? box.max.z : box.min.z));
+}
+
+double farthest_from(const dvec3& pivot, const Box& box) {
+    double farthest = 0;
+    for_corners(box, [&](const dvec3& corner) { farthest = std::max(farthest, glm::length(corner - pivot)); });
+    return farthest;
+}
+
+/// Grows `out` by where the box is at one pose.
+void add_pose(const RigidPose& pose, const Box& box, MotionReach& out) {
+    for_corners(box, [&](const dvec3& corner) {
+        const dvec3 at = pose(corner);
+        out.box.grow(at);
+        out.displacement_m = std::max(out.displacement_m, glm::length(at - corner));
+    });
+}
+
+/// What one motion alone does to a box. A point of the box is a mean of its corners, at each pose. Between two samples a corner
+/// stays within the height of its arc from the chord.
+MotionReach own_reach(const Model& model, const Motion& motion, const Box& box) {
+    const std::span<const MotionKey> keys = keys_of(model, motion);
+    MotionReach out;
+    out.box = box;
+    double height_m = 0;
+    const double radius_m = farthest_from(motion.pivot, box);
+    add_pose(between_keys(motion.pivot, keys[0], keys[0], 0), box, out);
+    for (std::size_t k = 0; k + 1 < keys.size(); ++k) {
+        const MotionKey &a = keys[k], &b = keys[k + 1];
+        const double turn = turn_between(quat_of(a), quat_of(b));
+        const double steps = std::max(1.0, std::ceil(turn / chord_rad));
+        height_m = std::max(height_m, radius_m * (1 - std::cos(0.5 * turn / steps)));
+        for (double step = 1; step <= steps; ++step) add_pose(between_keys(motion.pivot, a, b, step / steps), box, out);
+        const double seconds = b.time_s - a.time_s;
+        if (!(seconds > 0)) continue;  // a jump
+        const double travel_m = glm::length(b.translation - a.translation);
+        out.turn_rps = std::max(out.turn_rps, turn / seconds);
+        out.speed_mps = std::max(out.speed_mps, (travel_m + radius_m * turn) / seconds);
+    }
+    // The arcs, and the rounding of all that was computed here.
+    const dvec3 far = glm::max(glm::abs(out.box.min), glm::abs(out.box.max));
+    const double slack_m = height_m + 1e-12 * (1 + std::max({far.x, far.y, far.z}));
+    out.box.min -= slack_m;
+    out.box.max += slack_m;
+    out.displacement_m += slack_m;
+    return out;
+}
+
+}  // namespace
+
+RigidPose pose_at(const Model& model, std::uint32_t motion, double time_s) {
+    RigidPose pose;
+    if (motion == none) return pose;
+    pose = own_pose(model, model.motions[motion], time_s);
+    for (Index outer = model.motions[motion].outer; outer != none; outer = model.motions[outer].outer)
+        pose = composed(own_pose(model, model.motions[outer], time_s), pose);
+    return pose;
+}
+
+Placement moved(const Placement& placement, const RigidPose& pose) {
+    Placement out = placement;
+    out.origin = pose(placement.origin);
+    out.linear = mat3(glm::mat3_cast(pose.rotation) * dmat3(placement.linear));
+    return out;
+}
+
+MotionReach reach_of(const Model& model, std::uint32_t motion, const Box& at_rest) {
+    MotionReach reach;
+    reach.box = at_rest;
+    for (Index m = motion; m != none; m = model.motions[m].outer) {
+        const MotionReach own = own_reach(model, model.motions[m], reach.box);
+        reach = {own.box, reach.displacement_m + own.displacement_m, reach.speed_mps + own.speed_mps,
+                 reach.turn_rps + own.turn_rps};
+    }
+    return reach;
+}
+
+}  // namespace surefoot::model
