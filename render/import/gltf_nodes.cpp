@@ -39,6 +39,12 @@ dmat4 local_matrix(const tinygltf::Node& node) {
     return compose(t, q.size() == 4 ? unit(q[0], q[1], q[2], q[3]) : dquat(1, 0, 0, 0), s);
 }
 
+NodePose rest_pose(const tinygltf::Node& node) {
+    const auto& t = node.translation;
+    const auto& q = node.rotation;
+    return {t.size() == 3 ? dvec3(t[0], t[1], t[2]) : dvec3(0), q.size() == 4 ? unit(q[0], q[1], q[2], q[3]) : dquat(1, 0, 0, 0)};
+}
+
 float importance_of(const tinygltf::Node& node) {
     if (!node.extras.Has("importance") || !node.extras.Get("importance").IsNumber()) return 1.0F;
     const double value = node.extras.Get("importance").GetNumberAsDouble();
@@ -93,6 +99,8 @@ public:
         : model_(model), file_(file), scene_(scene), lights_(model, scene), state_(model.nodes.size(), State::fresh) {}
 
     LightReader& lights() { return lights_; }
+    /// Nodes move as it says; without one all stand still.
+    void animate(AnimationReader& reader) { animations_ = &reader; }
     /// Leaves this node out, and what is below it.
     void skip(int node) { state_[static_cast<std::size_t>(node)] = State::skipped; }
 
@@ -152,6 +160,10 @@ private:
         to.parent = parent;
         to.world = (parent == none ? dmat4(1.0) : scene_.nodes[parent].world) * local_matrix(from);
         to.importance = importance_of(from);
+        if (parent != none) to.motion = scene_.nodes[parent].motion;
+        if (animations_ != nullptr)
+            to.motion = animations_->motion_of(node, rest_pose(from), parent == none ? dmat4(1.0) : scene_.nodes[parent].world,
+                                               to.motion);
         to.walk = walk_of(from, parent == none ? WalkRule::by_rule : scene_.nodes[parent].walk, scene_);
         if (from.mesh >= 0 && static_cast<std::size_t>(from.mesh) < scene_.meshes.size()) to.mesh = static_cast<Index>(from.mesh);
         if (from.mesh >= 0 && to.mesh == none)
@@ -175,7 +187,7 @@ private:
         scene_.nodes[node].mesh = none;
         for (std::size_t i = 0; i < matrices->size(); ++i) {
             scene_.nodes.push_back(Node{fmt::format("{} #{}", parent.name, i), node, parent.mesh, parent.world * (*matrices)[i],
-                                        parent.importance, parent.walk});
+                                        parent.importance, parent.walk, parent.motion});
         }
     }
 
@@ -183,6 +195,7 @@ private:
     const std::string& file_;
     Scene& scene_;
     LightReader lights_;
+    AnimationReader* animations_ = nullptr;
     std::vector<State> state_;
     std::vector<Frame> stack_;
 };
@@ -265,10 +278,13 @@ Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, S
     }
     const std::vector<StandInClaim> claims = stand_in_claims(model, scene.warnings);
     Walk walk(model, file, scene);
+    AnimationReader animations(model, file, scene);
+    walk.animate(animations);
     for (const StandInClaim& claim : claims) walk.skip(claim.stand_in);
     for (const int root : roots_of(model, scene)) {
         if (auto walked = walk.from(root); !walked) return walked;
     }
+    animations.warn();
     walk.lights().finish();
     for (const StandInClaim& claim : claims)
         if (claim.used) add_stand_in(model, file, claims, claim, scene);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/import/lamps.hpp"
+#include "render/import/motion_tracks.hpp"
 #include "render/import/scene.hpp"
 #include "render/import/tinygltf.hpp"
 #include "rt/base/result.hpp"
@@ -106,6 +107,82 @@ private:
     const tinygltf::Model& model_;
     Scene& scene_;
     BrightestLamps lamps_;
+    std::array<Flawed, static_cast<std::size_t>(Flaw::count)> flaws_;
+};
+
+// ---- animations: rigid motions of nodes, looping; what is not rigid is refused by name ----
+
+/// A node's animated values, as the first animation that has them says.
+struct AnimatedNode {
+    Track translation, rotation;
+    int animation = -1;  ///< none: it stands still
+};
+
+/// All animations of a file, read once. Then it makes the motions of the nodes that draw something, one after the other.
+class AnimationReader {
+public:
+    AnimationReader(const tinygltf::Model& model, const std::string& file, Scene& scene);
+    /// Adds the node's own motion to the scene, carried by that of its parent. Returns what moves the node: `outer` if it has
+    /// none of its own. `parent`: its parent's frame to world, at rest.
+    Index motion_of(int node, const NodePose& rest, const dmat4& parent, Index outer);
+    /// One warning for each kind of flaw: it names the first node or animation and counts the others.
+    void warn();
+
+private:
+    /// What can be wrong with an animation.
+    enum class Flaw : std::uint8_t {
+        empty,
+        broken,
+        order,
+        number,
+        length,
+        quaternion,
+        duration,
+        scale,
+        weights,
+        kind,
+        skin,
+        matrix,
+        taken,
+        shear,
+        keys,
+        depth,
+        no_loop,
+        count
+    };
+    /// Things with one flaw.
+    struct Flawed {
+        std::string first;
+        std::size_t count = 0;
+    };
+    /// One animation as a whole.
+    struct Extent {
+        double from_s = 0, to_s = 0;
+        bool known = false, back = false;  ///< back: it is played forth and back
+    };
+
+    void flawed(Flaw flaw, std::string text);
+    [[nodiscard]] std::string name_of_node(int node) const;
+    [[nodiscard]] std::string name_of_animation(int animation) const;
+    void find_drawn();
+    void read_animation(int animation);
+    void read_channel(int animation, const tinygltf::AnimationChannel& channel);
+    void refuse(int node, Flaw flaw, const std::string& why);
+    bool read_track(int animation, const tinygltf::AnimationChannel& channel, bool rotation, Track& track);
+    bool check_times(int node, Track& track);
+    bool check_values(int node, bool rotation, Track& track);
+    [[nodiscard]] bool scale_stays(int animation, const tinygltf::AnimationChannel& channel);
+    void measure(int animation);
+    [[nodiscard]] NodeTracks tracks_of(int node, const NodePose& rest, const dmat4& parent) const;
+
+    const tinygltf::Model& model_;
+    const std::string& file_;
+    Scene& scene_;
+    std::vector<AnimatedNode> nodes_;
+    std::vector<bool> drawn_, refused_;  ///< by node: something at or below it is drawn; it stands still
+    std::vector<Extent> extents_;        ///< by animation
+    std::vector<std::uint32_t> depths_;  ///< by motion of the scene
+    std::size_t first_motion_ = 0;
     std::array<Flawed, static_cast<std::size_t>(Flaw::count)> flaws_;
 };
 

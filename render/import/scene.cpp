@@ -56,7 +56,30 @@ void move_all(std::vector<T>& to, std::vector<T>& from) {
 
 }  // namespace
 
+namespace {
+
+/// Together they may be more than a model holds: then the later scene stands still.
+void append_motions(Scene& to, Scene& from) {
+    const bool fits = to.motions.size() + from.motions.size() <= model::max_motions &&
+                      to.motion_keys.size() + from.motion_keys.size() <= model::max_motion_keys;
+    if (!fits) to.warnings.emplace_back("Too many motions: those of a later file are left out, and its nodes stand still");
+    for (Node& node : from.nodes) {
+        if (!fits) node.motion = none;
+        shift(node.motion, to.motions.size());
+    }
+    if (!fits) return;
+    for (model::Motion& motion : from.motions) {
+        motion.first_key += static_cast<std::uint32_t>(to.motion_keys.size());
+        shift(motion.outer, to.motions.size());
+    }
+    move_all(to.motions, from.motions);
+    move_all(to.motion_keys, from.motion_keys);
+}
+
+}  // namespace
+
 void append(Scene& to, Scene&& from) {
+    append_motions(to, from);
     for (Mesh& mesh : from.meshes) {
         for (Primitive& primitive : mesh.primitives) shift(primitive.material, to.materials.size());
     }

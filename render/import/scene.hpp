@@ -61,6 +61,7 @@ struct Node {
     dmat4 world{1.0};  ///< mesh frame to world
     float importance = 1.0F;
     WalkRule walk = WalkRule::by_rule;  ///< handed down to its children
+    Index motion = none;                ///< in Scene::motions; handed down to its children, unless they have their own
 };
 
 /// A missing or broken thing that the scene draws.
@@ -104,9 +105,11 @@ struct Scene {
     std::vector<Material> materials;  ///< at least one
     std::vector<image::Image> images;
     std::vector<StandIn> stand_ins;
-    std::optional<Sun> sun;       ///< the brightest one
-    double fog_visibility_m = 0;  ///< extras.fog_visibility_m of the glTF scene; 0: no fog
-    std::vector<Lamp> lamps;      ///< the brightest max_lamps, in the file's order
+    std::optional<Sun> sun;              ///< the brightest one
+    double fog_visibility_m = 0;         ///< extras.fog_visibility_m of the glTF scene; 0: no fog
+    std::vector<Lamp> lamps;             ///< the brightest max_lamps, in the file's order
+    std::vector<model::Motion> motions;  ///< from where nodes stand at rest; outer ones come first
+    std::vector<model::MotionKey> motion_keys;
     std::vector<std::string> sources;
     std::vector<std::string> warnings;              ///< repaired or dropped data, one line each with counts
     std::vector<Damage> damage;                     ///< warnings about drawn things, which a person should repair
@@ -115,7 +118,7 @@ struct Scene {
 };
 
 /// Adds all of one scene to another. Of more than max_lamps lamps the brightest stay; a warning counts the others. Of two suns
-/// the brighter one stays, and of two fogs the thicker one.
+/// the brighter one stays, and of two fogs the thicker one. Of too many motions the first ones stay.
 void append(Scene& to, Scene&& from);
 
 /// By ending (formats.hpp), with the stand-ins listed beside each file (stand_ins.hpp). Several files become one scene.
