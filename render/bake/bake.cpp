@@ -17,6 +17,7 @@
 #include "render/bake/ground.hpp"
 #include "render/bake/limits.hpp"
 #include "render/bake/materials.hpp"
+#include "render/bake/motions.hpp"
 #include "render/bake/picture_loss.hpp"
 #include "render/bake/proxies.hpp"
 #include "render/bake/quality.hpp"
@@ -115,8 +116,10 @@ void BakeContext::place_objects() {
         object.name = node.name;
         object.importance = node.importance;
         object.object = object_count++;
+        object.motion = node.motion;
         objects.push_back(std::move(object));
     }
+    adopt_motions(scene, objects, model);
 }
 
 bool BakeContext::make_forms() {
@@ -183,9 +186,7 @@ void BakeContext::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
 }
 
 bool BakeContext::make_clusters() {
-    std::vector<Box> boxes;
-    for (const PlacedObject& object : objects) boxes.push_back(object.box);
-    tree = grow_clusters(boxes, 8);
+    tree = cluster_objects(objects, model, 8);
     clusters.resize(tree.clusters.size());
     const auto n = static_cast<std::uint32_t>(objects.size());
     std::vector<std::vector<std::uint32_t>> by_height;
@@ -211,6 +212,7 @@ bool BakeContext::make_clusters() {
             if (!go) return;
             const std::uint32_t c = same[i];
             clusters[c] = make_cluster(input, tree.clusters[c], members[c]);
+            add_displacement(clusters[c].chain, tree.clusters[c].displacement_m);
             if (!stage.step()) go = false;
         });
     }
@@ -238,7 +240,7 @@ bool BakeContext::shows_pictures() const {
 /// triangles are cheaper than six faces.
 bool BakeContext::wants_box(std::uint32_t entity) const {
     if (proxy_or_none == model::none) return false;
-    if (entity >= objects.size()) return true;
+    if (entity >= objects.size()) return !(tree.clusters[entity - objects.size()].displacement_m > 0);
     const std::uint32_t above = shows_pictures() ? min_box_triangles : min_plain_box_triangles;
     return forms[objects[entity].mesh].triangles > (objects[entity].piece ? std::max(above, min_piece_box_triangles) : above);
 }
@@ -262,7 +264,7 @@ void BakeContext::emit_object(model::Index index, std::uint32_t which, const std
     node.triangles = form.triangles;
     node.name = add_name(object.name);
     node.first_rep = static_cast<model::Index>(model.reps.size());
-    emit_representations(chains[object.mesh], object.world, model);
+    emit_representations(chains[object.mesh], object.world, model, object.motion);
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
 }
 
@@ -272,7 +274,7 @@ void BakeContext::emit_cluster(model::Index index, std::uint32_t which,
     const ClusterForm& form = clusters[which];
     model.nodes[index].box = cluster.box;
     model.nodes[index].first_rep = static_cast<model::Index>(model.reps.size());
-    emit_representations(emit_chain(form.chain, model), dmat4(1.0), model);
+    emit_representations(emit_chain(form.chain, model), dmat4(1.0), model, cluster.motion);
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
     const auto first = static_cast<model::Index>(model.nodes.size());
     model.nodes[index].first_child = first;
@@ -465,7 +467,9 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         fill_scene_light(context.model);
         context.find_effects();
         context.model.ground = make_ground(scene, progress);
-        Tour tour = make_tour(context.model.ground, context.model.nodes[0].box, progress);
+        const std::optional<model::Ground> ways = ground_with_ways(context.model);
+        Tour tour = make_tour(ways ? *ways : context.model.ground, context.model.nodes[0].box, progress);
+        sweep_boxes(context.model);
         context.model.tour = std::move(tour.path);
         context.model.tour_kind = std::move(tour.kind);
         done = !progress.stopped();

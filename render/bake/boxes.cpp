@@ -89,7 +89,8 @@ void PlacedBoxes::insert() {
     for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
         Node& node = model_.nodes[n];
         const auto first = static_cast<Index>(model_.reps.size());
-        if (boxes_[n].shown_faces() > 0) emit_box(boxes_[n], proxy_, model_);
+        const model::Representation& coarsest = meshes_[ranges_[n].first];
+        if (boxes_[n].shown_faces() > 0) emit_box(boxes_[n], proxy_, model_, model_.placements[coarsest.placement].motion);
         const auto from = meshes_.begin() + ranges_[n].first;
         model_.reps.insert(model_.reps.end(), from, from + ranges_[n].second);
         node.first_rep = first;

@@ -15,6 +15,8 @@ struct ClusterTree {
     struct Cluster {
         Box box;
         std::vector<std::uint32_t> children;  ///< entities; n + i is clusters[i]
+        std::uint32_t motion = 0xffffffffU;   ///< of all of its objects, which it moves with; none: it stands still
+        double displacement_m = 0;            ///< how far what it holds may be from its rest, where it stands still
     };
     std::vector<Cluster> clusters;
     std::uint32_t root = 0;  ///< entity

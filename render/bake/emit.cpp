@@ -31,8 +31,9 @@ EmittedChain emit_chain(const LodChain& chain, model::Model& model) {
     return out;
 }
 
-void emit_representations(const EmittedChain& emitted, const dmat4& world, model::Model& model) {
+void emit_representations(const EmittedChain& emitted, const dmat4& world, model::Model& model, model::Index motion) {
     model::Placement placement;
+    placement.motion = motion;
     const dmat3 linear(world);
     placement.origin = dvec3(world * dvec4(emitted.centre, 1.0));
     placement.linear = mat3(linear);
@@ -139,7 +140,7 @@ void emit_face(const BoxForm& form, std::uint32_t f, model::Model& model, model:
 
 }  // namespace
 
-void emit_box(const BoxForm& form, model::Index proxy, model::Model& model) {
+void emit_box(const BoxForm& form, model::Index proxy, model::Model& model, model::Index motion) {
     const model::Index material = form.textured ? add_box_material(form, model) : proxy;
     model::Representation rep;
     rep.kind = form.textured ? model::RepKind::textured_box : model::RepKind::colour_box;
@@ -147,7 +148,7 @@ void emit_box(const BoxForm& form, model::Index proxy, model::Model& model) {
     rep.error_m = form.error_m;
     rep.min_distance_m = static_cast<float>(0.5 * form.box.diagonal());
     rep.placement = static_cast<model::Index>(model.placements.size());
-    model.placements.push_back({form.box.centre(), mat3(1.0F)});
+    model.placements.push_back({form.box.centre(), mat3(1.0F), motion});
     rep.first_part = static_cast<model::Index>(model.parts.size());
     rep.part_count = 1;
     rep.effects = model.materials[material].effects;

@@ -27,8 +27,10 @@ struct EmittedChain {
 
 EmittedChain emit_chain(const LodChain& chain, model::Model& model);
 
-/// Adds one representation a level, placed by `world` (mesh frame to world). Errors are multiplied by its largest stretch.
-void emit_representations(const EmittedChain& emitted, const dmat4& world, model::Model& model);
+/// Adds one representation a level, placed by `world` (mesh frame to world), and moved by `motion`. Errors are multiplied by its
+/// largest stretch.
+void emit_representations(const EmittedChain& emitted, const dmat4& world, model::Model& model,
+                          model::Index motion = model::none);
 
 /// A box impostor in the world frame, for a node with box `box`.
 struct BoxForm {
@@ -44,7 +46,7 @@ struct BoxForm {
 };
 /// Texels of a face in a cell of a picture of six, whose rim keeps mip levels from mixing faces.
 constexpr std::uint32_t face_pixels(std::uint32_t cell) { return cell - cell / 8; }
-/// Adds the representation of the box. proxy: the material of plain boxes.
-void emit_box(const BoxForm& form, model::Index proxy, model::Model& model);
+/// Adds the representation of the box, which `motion` moves. proxy: the material of plain boxes.
+void emit_box(const BoxForm& form, model::Index proxy, model::Model& model, model::Index motion = model::none);
 
 }  // namespace surefoot::bake

@@ -68,7 +68,7 @@ public:
         if (!run_opaque()) return false;
         for_all(scene_.nodes.size(), [&](std::size_t n) {
             const importer::Node& node = scene_.nodes[n];
-            if (!is_placed(scene_, node)) return;
+            if (!is_placed(scene_, node) || node.motion != importer::none) return;
             std::size_t t = 0;
             for (const importer::Primitive& p : scene_.meshes[node.mesh].primitives) {
                 const bool clear = scene_.materials[p.material].alpha == model::AlphaMode::blend;
@@ -95,7 +95,7 @@ private:
         for_all(scene_.nodes.size(), [&](std::size_t n) {
             if (!go_) return;
             const importer::Node& node = scene_.nodes[n];
-            if (is_placed(scene_, node)) {
+            if (is_placed(scene_, node) && (by_rules || node.motion == importer::none)) {  // what moves has no baked shadow
                 const GroundFacts& facts = facts_[node.mesh];
                 if (!by_rules || node.walk == importer::WalkRule::by_rule)
                     blocking_[n] = blocking_solids(facts, node.world);

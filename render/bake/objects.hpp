@@ -28,6 +28,7 @@ struct PlacedObject {
     Box box;                   ///< world
     std::uint32_t object = 0;  ///< number of the object; pieces of one object share it
     bool piece = false;
+    model::Index motion = model::none;
 };
 
 /// Limits above which a mesh is cut into pieces.

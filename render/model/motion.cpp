@@ -75,10 +75,10 @@ void add_pose(const RigidPose& pose, const Box& box, MotionReach& out) {
 
 /// What one motion alone does to a box. A point of the box is a mean of its corners, at each pose. Between two samples a corner
 /// stays within the height of its arc from the chord.
-MotionReach own_reach(const Model& model, const Motion& motion, const Box& box) {
+MotionReach own_reach(const Model& model, const Motion& motion, const Box& box, bool with_rest) {
     const std::span<const MotionKey> keys = keys_of(model, motion);
     MotionReach out;
-    out.box = box;
+    if (with_rest) out.box = box;
     double height_m = 0;
     const double radius_m = farthest_from(motion.pivot, box);
     add_pose(between_keys(motion.pivot, keys[0], keys[0], 0), box, out);
@@ -121,15 +121,29 @@ Placement moved(const Placement& placement, const RigidPose& pose) {
     return out;
 }
 
-MotionReach reach_of(const Model& model, std::uint32_t motion, const Box& at_rest) {
+MotionReach reach_of(const Model& model, std::uint32_t motion, const Box& at_rest, bool with_rest) {
     MotionReach reach;
     reach.box = at_rest;
     for (Index m = motion; m != none; m = model.motions[m].outer) {
-        const MotionReach own = own_reach(model, model.motions[m], reach.box);
+        const MotionReach own = own_reach(model, model.motions[m], reach.box, with_rest);
         reach = {own.box, reach.displacement_m + own.displacement_m, reach.speed_mps + own.speed_mps,
                  reach.turn_rps + own.turn_rps};
     }
     return reach;
+}
+
+Box rest_box_of(const Model& model, const Node& node) {
+    if (motion_of(model, node) == none) return node.box;
+    Box box;
+    for (std::uint32_t c = 0; c < node.child_count; ++c) box.grow(rest_box_of(model, model.nodes[node.first_child + c]));
+    if (node.child_count > 0) return box;
+    const Representation& rep = model.reps[node.first_rep + node.rep_count - 1];
+    const Placement& placement = model.placements[rep.placement];
+    const dmat3 linear(placement.linear);
+    for_triangles(model, rep, [&](const Material&, const vec3& a, const vec3& b, const vec3& c) {
+        for (const vec3& corner : {a, b, c}) box.grow(placement.origin + linear * dvec3(corner));
+    });
+    return box;
 }
 
 }  // namespace surefoot::model

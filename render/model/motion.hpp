@@ -9,6 +9,7 @@
 namespace surefoot::model {
 
 struct Model;
+struct Node;
 struct Placement;
 
 /// Where a rigid thing is, relative to its rest: x -> pivot + translation + rotation * (x - pivot), in world coordinates.
@@ -50,11 +51,14 @@ Placement moved(const Placement& placement, const RigidPose& pose);
 
 /// Bounds of what a motion does to the points of a box. The box is in the world, at rest.
 struct MotionReach {
-    Box box;                    ///< contains all of the points at all times, and at rest
+    Box box;                    ///< contains all of the points at all times, and at rest if asked for
     double displacement_m = 0;  ///< no point is ever farther from its rest
     double speed_mps = 0;       ///< no point is ever faster, jumps left out
     double turn_rps = 0;        ///< nothing ever turns faster
 };
-MotionReach reach_of(const Model& model, std::uint32_t motion, const Box& at_rest);
+MotionReach reach_of(const Model& model, std::uint32_t motion, const Box& at_rest, bool with_rest = true);
+
+/// The box of a node's full detail at rest: Node::box, unless it moves. Passes over its triangles.
+Box rest_box_of(const Model& model, const Node& node);
 
 }  // namespace surefoot::model
