@@ -61,6 +61,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     select::reserve(impl->cut, candidates);
     impl->plan.reserve(candidates);
     impl->unprepared.reserve(impl->model);
+    impl->moving = model::MovingNodes(impl->model);
     const std::size_t max_drawn = std::max<std::size_t>(candidates * 2, impl->unprepared.capacity());
     impl->drawn.reserve(max_drawn);
     impl->culled.reserve(candidates);
@@ -116,6 +117,8 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     const auto apart = static_cast<float>(std::sqrt(hints.form_ratio > 0.0 ? hints.form_ratio : 1.0));
     out.full_factor = apart;
     out.coarse_factor = 1.0F / apart;
+    out.from_s = hints.time_s;
+    out.to_s = hints.time_s + hints.span_s;
     e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out);
     out.full_filter_us = e.filter_costs.any() ? e.filter_costs.full_us(out) : 0.0F;
     if (!chosen || !(hints.planned_us[0] > 0.0) || e.options.prepare.full_depth) return;
@@ -301,6 +304,15 @@ void Engine::set_light(const model::Daylight& light) {
     e.device->set_light(light);
     e.watch.forget();
     e.rest_picture.leave();
+}
+
+void Engine::set_time(double time_s) {
+    Impl& e = *impl_;
+    e.draws.plays();
+    if (!e.moving.any()) return;
+    e.device->draws.plays();
+    e.moving.set_span(time_s, time_s);
+    e.device->set_time(time_s);
 }
 
 void Engine::select_last() {

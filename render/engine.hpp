@@ -64,7 +64,8 @@ struct Correction {
 struct PrepareHints {
     /// By step of resolution: predicted time that a cut may take, without correction and headroom. 0: the resolution stays.
     std::array<double, model::resolution_steps.size()> planned_us{};
-    double form_ratio = 1;  ///< how much more expensive full detail is against coarse forms than predicted
+    double form_ratio = 1;          ///< how much more expensive full detail is against coarse forms than predicted
+    double time_s = 0, span_s = 0;  ///< of what moves: the set is for pictures from this time on, and no later than the span
 };
 
 /// Results of a submission. Times in us from the call.
@@ -133,6 +134,9 @@ public:
     /// with all effects.
     void hide_effects(model::EffectMask hidden);
     void set_light(const model::Daylight& light);
+    /// The time of the next pictures: where what moves is drawn. As hide_effects() else, but a picture at rest goes on: it only
+    /// begins where nothing in view moves.
+    void set_time(double time_s);
 
     /// Offers something that the next select() may buy beside forms. False: refused, and counted in its cut.
     bool offer(const select::Item& item);

@@ -31,6 +31,21 @@ rt::Guarantee Engine::Impl::guarantee_of(const SubmitReport& report) const {
     return cut.guarantee > rt::Guarantee::kept ? cut.guarantee : rt::Guarantee::stand_ins;
 }
 
+bool Engine::Impl::in_view(model::Index node) const {
+    return model::visible(frustum, moving.any() ? moving.box(node) : model.nodes[node].box);
+}
+
+/// Whether anything moves, now or later, that the pose may see.
+bool Engine::Impl::motion_in_view(const Pose& pose) const {
+    if (!moving.any()) return false;
+    // A moved sample sees a pixel more.
+    const double pixel_rad = model::pixel_angle(pose, options.device.viewport);
+    const model::Frustum wide =
+        model::make_frustum(pose, options.device.viewport, model::far_corners_m(model.nodes[0].box), 0, 2 * pixel_rad);
+    return std::any_of(moving.roots().begin(), moving.roots().end(),
+                       [&](model::Index node) { return model::visible(wide, model.nodes[node].box); });
+}
+
 /// Draws what of a slice the pose really sees; returns what that was predicted to cost.
 model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items, SubmitReport& report) {
     device->draws.plays();
@@ -39,7 +54,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
     for (const select::CutItem& item : items) {
         const prepare::Choice& choice = prepared->choices[item.choice];
         report.value += static_cast<double>(choice.value);
-        if (!model::visible(frustum, model.nodes[item.node].box)) {
+        if (!in_view(item.node)) {
             ++report.culled;
             if (culled.size() < culled.capacity()) culled.push_back({item.node, item.rep});
             continue;
@@ -207,7 +222,7 @@ void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, dou
 /// False: the pose is not at rest, and a cut is to be drawn.
 bool Engine::Impl::submit_rest(const Pose& pose, const SubmitLimits& limits, SubmitReport& report) {
     device->draws.plays();
-    const bool still = limits.frame_ns >= 0 && watch.at_rest(pose, limits.frame_ns) && !device->lost();
+    const bool still = limits.frame_ns >= 0 && watch.at_rest(pose, limits.frame_ns) && !device->lost() && !motion_in_view(pose);
     if (still) {
         report = last_report;
         const RestScene scene{

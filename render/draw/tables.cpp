@@ -56,7 +56,8 @@ DrawTables make_tables(const model::Model& model) {
     }
     tables.placements.reserve(model.placements.size());
     for (const model::Placement& placement : model.placements) {
-        Placed placed{placement.origin, {}, glm::determinant(placement.linear) < 0};
+        Placed placed{placement.origin, {}, glm::determinant(placement.linear) < 0, placement.motion != model::none};
+        if (!model.motions.empty()) tables.motions.push_back(placement.motion);
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 3; ++column) {
                 placed.rows[3 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column)] = placement.linear[column][row];
@@ -71,6 +72,21 @@ DrawTables make_tables(const model::Model& model) {
         tables.centres.emplace_back(vec3(centre), 0.0F);
     }
     return tables;
+}
+
+Placed moved(const Placed& placed, const model::RigidPose& pose) {
+    Placed out = placed;
+    out.origin = pose(placed.origin);
+    const dmat3 turn = glm::mat3_cast(pose.rotation);
+    for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column) {
+            double sum = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+                sum += turn[static_cast<int>(k)][static_cast<int>(row)] * static_cast<double>(placed.rows[3 * k + column]);
+            out.rows[3 * row + column] = static_cast<float>(sum);
+        }
+    }
+    return out;
 }
 
 void eye_relative_rows(const Placed& placed, const dvec3& eye, std::array<float, 12>& rows) {

@@ -37,6 +37,7 @@ struct Placed {
     dvec3 origin;
     std::array<float, 9> rows;  ///< linear part, row-major
     bool mirrored;
+    bool moves;  ///< DrawTables::motions says how
 };
 
 /// All tables that drawing reads. Made once from a model; constant after that.
@@ -46,12 +47,16 @@ struct DrawTables {
     std::vector<DrawPart> parts;
     std::vector<DrawRep> reps;
     std::vector<Placed> placements;
+    std::vector<std::uint32_t> motions;  ///< of the model, by placement; empty where nothing moves
     DepthBiasRanks depth_bias;
     std::vector<vec4> centres;  ///< of a node's box, relative to `middle`; for sorting only
     dvec3 middle{0.0};
 };
 
 DrawTables make_tables(const model::Model& model);
+
+/// A placement as it stands in a pose.
+Placed moved(const Placed& placed, const model::RigidPose& pose);
 
 /// The eye-relative rows of a placement. The origin is made relative in double: floats lose millimetres far from 0.
 void eye_relative_rows(const Placed& placed, const dvec3& eye, std::array<float, 12>& rows);

@@ -153,6 +153,8 @@ public:
     virtual void hide_effects(model::EffectMask hidden) REQUIRES(draws) { static_cast<void>(hidden); }
     /// The light of the pictures that begin from now on; after load() it is the model's own.
     virtual void set_light(const model::Daylight& light) REQUIRES(draws) { static_cast<void>(light); }
+    /// The time at which moving placements are drawn in the pictures that begin from now on; after load() it is 0.
+    virtual void set_time(double time_s) REQUIRES(draws) { static_cast<void>(time_s); }
     /// `resolution`: share of the picture's width and height at which it is drawn, then enlarged once by finish_frame(). The step
     /// of model::resolution_steps that is not above it, or the least; NaN, zero and below mean 1.
     virtual void begin_frame(const Pose& pose, float resolution) REQUIRES(draws) = 0;

@@ -35,6 +35,7 @@ public:
     void set_filter(rt::TextureFilter filter) override REQUIRES(draws);
     void hide_effects(model::EffectMask hidden) override REQUIRES(draws);
     void set_light(const model::Daylight& light) override REQUIRES(draws) { light_ = light; }
+    void set_time(double time_s) override REQUIRES(draws) { time_s_ = time_s; }
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
@@ -121,6 +122,7 @@ private:
     void apply(const State& state) REQUIRES(draws);
     void set_blending(bool on) REQUIRES(draws);
     void write_instance(const Pending& pending, std::uint32_t at) REQUIRES(draws);
+    [[nodiscard]] draw::Placed placed_now(std::uint32_t placement) const REQUIRES(draws);
     void append_command(const Pending& pending, std::uint32_t at, std::uint32_t first_of_batch) REQUIRES(draws);
 
     std::unique_ptr<Context> context_;
@@ -150,7 +152,9 @@ private:
 
     Pose pose_ GUARDED_BY(draws);
     mat4 view_projection_ GUARDED_BY(draws){1.0F};
-    model::Daylight light_ GUARDED_BY(draws), shown_light_ GUARDED_BY(draws);  ///< of the next picture, and of this one
+    model::Daylight light_ GUARDED_BY(draws), shown_light_ GUARDED_BY(draws);   ///< of the next picture, and of this one
+    const model::Model* moving_model_ GUARDED_BY(draws) = nullptr;              ///< whose placements may move
+    double time_s_ GUARDED_BY(draws) = 0, shown_time_s_ GUARDED_BY(draws) = 0;  ///< of the next picture, and of this one
     std::uint64_t frame_number_ GUARDED_BY(draws) = 0;
     FrameStats stats_ GUARDED_BY(draws);
     std::vector<Pending> pending_ GUARDED_BY(draws), blended_ GUARDED_BY(draws);

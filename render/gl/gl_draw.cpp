@@ -66,6 +66,7 @@ void GlDevice::start_picture(const Pose& pose) {
     used_instances_ = used_commands_ = 0;
     state_known_ = false;
     shown_light_ = light_;
+    shown_time_s_ = time_s_;
     shown_light_.background *= vec3(options_.sky[0], options_.sky[1], options_.sky[2]);
 }
 
@@ -124,7 +125,8 @@ void GlDevice::draw_parts(std::span<const DrawItem> items, Parts parts) {
     for (const DrawItem& item : items) {
         const draw::DrawRep& rep = tables_.reps[item.rep];
         const draw::Placed& placed = tables_.placements[rep.placement];
-        const float distance = glm::length(vec3(tables_.centres[item.node]) - eye);
+        const float distance = placed.moves ? static_cast<float>(glm::length(placed_now(rep.placement).origin - pose_.position))
+                                            : glm::length(vec3(tables_.centres[item.node]) - eye);
         ++stats_.items;
         stats_.triangles += rep.triangles;
         for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
@@ -187,11 +189,21 @@ void GlDevice::submit(std::span<Pending> sorted) {
     issue(state, first, used_commands_ - first);
 }
 
+/// A moving placement at the time of the picture.
+draw::Placed GlDevice::placed_now(std::uint32_t placement) const {
+    const draw::Placed& placed = tables_.placements[placement];
+    return draw::moved(placed, model::pose_at(*moving_model_, tables_.motions[placement], shown_time_s_));
+}
+
 void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
     const draw::DrawPart& part = tables_.parts[pending.part];
-    const draw::Placed& placed = tables_.placements[tables_.reps[pending.rep].placement];
+    const std::uint32_t placement = tables_.reps[pending.rep].placement;
+    const draw::Placed& placed = tables_.placements[placement];
     Instance instance;
-    draw::eye_relative_rows(placed, pose_.position, instance.rows);
+    if (placed.moves)
+        draw::eye_relative_rows(placed_now(placement), pose_.position, instance.rows);
+    else
+        draw::eye_relative_rows(placed, pose_.position, instance.rows);
     const draw::DrawRep& rep = tables_.reps[pending.rep];
     apply_depth_bias(tables_.depth_bias.ranks[tables_.depth_bias.first_of_rep[pending.rep] + pending.part - rep.first_part],
                      instance.rows);

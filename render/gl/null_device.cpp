@@ -7,6 +7,7 @@
 #include "render/draw/tables.hpp"
 #include "render/gl/program.hpp"
 #include "render/model/item_costs.hpp"
+#include "render/model/moving.hpp"
 #include "rt/base/random.hpp"
 
 namespace surefoot::gl {
@@ -43,6 +44,7 @@ public:
         set_filter_ = filter;
         std::swap(costs_.grids, other_grids_);  // of equal layout, so item_costs_ stays right
     }
+    void set_time(double time_s) override REQUIRES(draws) { time_s_ = time_s; }
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
@@ -87,6 +89,7 @@ public:
 
 private:
     void charge() REQUIRES(draws);
+    [[nodiscard]] model::ItemCost cost_of(const DrawItem& item) const REQUIRES(draws);
     /// The picture at rest has no fixed costs of a frame: its passes are charged one by one.
     void charge_pass() REQUIRES(draws) { before_us_ += null_.cost_scale * factor_ * null_.rest_pass_us; }
 
@@ -103,6 +106,8 @@ private:
     std::vector<LoadedProgram> programs_;
     const model::Model* model_ = nullptr;
     std::optional<model::ItemCosts> item_costs_;
+    model::MovingNodes moving_ GUARDED_BY(draws);
+    double time_s_ GUARDED_BY(draws) = 0;
     dvec3 eye_{0.0};
     model::ViewScale scale_;
     FrameStats stats_ GUARDED_BY(draws);
@@ -118,6 +123,8 @@ Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& p
     for (const model::EffectMask mask : draw::make_tables(model).masks) programs_.push_back({mask, programs(mask)});
     model_ = &model;
     item_costs_.emplace(model, costs_);
+    moving_ = model::MovingNodes(model);
+    time_s_ = 0;
     return {};
 }
 
@@ -137,6 +144,7 @@ std::string NullDevice::program_text(model::EffectMask mask) const {
 void NullDevice::begin_frame(const Pose& pose, float resolution) {
     before_us_ += frame_us_;
     eye_ = pose.position;
+    moving_.set_span(time_s_, time_s_);
     stats_ = {};
     stats_.resolution = model::resolution_steps[model::resolution_step(resolution)];
     stats_.samples = samples();
@@ -150,10 +158,16 @@ void NullDevice::begin_frame(const Pose& pose, float resolution) {
     charge();
 }
 
+model::ItemCost NullDevice::cost_of(const DrawItem& item) const {
+    if (const auto moving = moving_.find(item.node))
+        return item_costs_->of(item.rep, moving->rest, moving->pose.back(eye_), model::turned_back(scale_, moving->pose));
+    return item_costs_->of(item.rep, model_->nodes[item.node].box, eye_, scale_);
+}
+
 void NullDevice::draw(std::span<const DrawItem> items) {
     for (const DrawItem& item : items) {
         const model::Representation& rep = model_->reps[item.rep];
-        const model::ItemCost cost = item_costs_->of(item.rep, model_->nodes[item.node].box, eye_, scale_);
+        const model::ItemCost cost = cost_of(item);
         submit_us_ += static_cast<double>(cost.submit_us);
         raster_us_ += static_cast<double>(cost.raster_us);
         ++stats_.items;
@@ -176,7 +190,7 @@ void NullDevice::draw_rest(std::span<const DrawItem> items, Parts parts) {
     model::ItemCost sum{costs_.slice_us, 0};
     for (const DrawItem& item : items) {
         if (parts == Parts::blended && (model_->reps[item.rep].effects & model::effect_blend) == 0) continue;
-        sum += item_costs_->of(item.rep, model_->nodes[item.node].box, eye_, scale_);
+        sum += cost_of(item);
         stats_.draws += model_->reps[item.rep].part_count;
     }
     const float us = costs_.combine.frame_us(sum.submit_us, sum.raster_us) - costs_.combine.fixed_us;

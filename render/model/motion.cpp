@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include <fmt/format.h>
+
 #include "render/model/model.hpp"
 
 namespace surefoot::model {
@@ -130,6 +132,29 @@ MotionReach reach_of(const Model& model, std::uint32_t motion, const Box& at_res
                  reach.turn_rps + own.turn_rps};
     }
     return reach;
+}
+
+EffectFinding motion_finding(const Model& model) {
+    EffectFinding finding;
+    if (model.motions.empty()) {
+        finding.reason = "no animation moves anything";
+        return finding;
+    }
+    std::vector<bool> moving(model.object_count, false);
+    for (const Node& node : model.nodes) {
+        if (node.child_count > 0 || motion_of(model, node) == none) continue;
+        finding.triangles += node.triangles;
+        if (node.object < moving.size()) moving[node.object] = true;
+    }
+    double shortest_s = model.motions[0].period_s, longest_s = shortest_s;
+    for (const Motion& motion : model.motions) {
+        shortest_s = std::min(shortest_s, motion.period_s);
+        longest_s = std::max(longest_s, motion.period_s);
+    }
+    finding.called_for = finding.triangles > 0;
+    finding.reason = fmt::format("animations move {} of {} objects; their periods are {:.3g} to {:.3g} s",
+                                 std::count(moving.begin(), moving.end(), true), model.object_count, shortest_s, longest_s);
+    return finding;
 }
 
 Box rest_box_of(const Model& model, const Node& node) {

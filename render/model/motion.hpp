@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "render/model/effects.hpp"
 #include "rt/base/geometry.hpp"
 
 namespace surefoot::model {
@@ -57,6 +58,9 @@ struct MotionReach {
     double turn_rps = 0;        ///< nothing ever turns faster
 };
 MotionReach reach_of(const Model& model, std::uint32_t motion, const Box& at_rest, bool with_rest = true);
+
+/// Whether a model calls for motion, and why, as for an effect. It has no program and no bit: what moves is drawn as what stands.
+EffectFinding motion_finding(const Model& model);
 
 /// The box of a node's full detail at rest: Node::box, unless it moves. Passes over its triangles.
 Box rest_box_of(const Model& model, const Node& node);

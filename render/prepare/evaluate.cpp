@@ -78,8 +78,15 @@ float mean_size_m(const Box& box) {
 /// What moves fast across the view is blurred (Maciel 1994, section 3.3.2): down to a half, since walking towards a thing does
 /// not blur it.
 float motion_factor(const RegionView& view, float distance_m) {
-    const float omega = view.speed_mps / distance_m + view.turn_rps;
+    const float omega = (view.speed_mps + view.object_mps) / distance_m + view.turn_rps;
     return 1.0F - 0.5F * omega / (omega + 4.0F);
+}
+
+/// How much of its sharpness a moving thing keeps, above 0 to 1. Of what it crosses in a frame of 30 Hz, a quarter is taken as
+/// blurred: what the eye can tell apart grows by that (the motion benefit of Funkhouser and Sequin 1993, section 4.2).
+float sharpness(const RegionView& view, float distance_m) {
+    constexpr float blurred_s = 0.25F / 30;
+    return view.resolved_rad / (view.resolved_rad + blurred_s * view.object_mps / distance_m);
 }
 
 }  // namespace
@@ -99,6 +106,16 @@ Outline outline_of(const RegionView& view, const Box& box) {
         outline = {std::min(outline.left, x), std::min(outline.low, y), std::max(outline.right, x), std::max(outline.high, y)};
     }
     return deepest > near_m ? outline : Outline{};
+}
+
+RegionView seen_at_rest(const RegionView& view, const model::MovingNode& moving) {
+    RegionView out = view;
+    out.eye = moving.pose.back(view.eye);
+    out.radius_m += moving.drift_m;
+    out.scale = model::turned_back(view.scale, moving.pose);
+    out.wide = model::turned_back(view.wide, moving.pose);
+    out.object_mps = static_cast<float>(std::min(moving.speed_mps, 1e4));
+    return out;
 }
 
 float nearest_distance(const RegionView& view, const Box& box) {
@@ -123,27 +140,28 @@ float finest_error(const model::Model& model, const model::Node& node, float nea
 Evaluator::Evaluator(const model::Model& model, const model::CostModel& costs)
     : model_(model), costs_(costs), item_costs_(model, costs) {}
 
-std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices,
+std::uint32_t Evaluator::evaluate(const RegionView& view, const Box& box, float nearest_m, Candidate& candidate, Choice* choices,
                                   Weight& weight) const {
     const model::Node& node = model_.nodes[candidate.node];
-    const dvec3 eye = nearest_eye(view, node.box);
+    const dvec3 eye = nearest_eye(view, box);
     const float distance = error_distance(nearest_m);
-    const Seen seen = look(view, node.box, eye);
+    const Seen seen = look(view, box, eye);
+    const float sharp = sharpness(view, distance);
     candidate.pixels = seen.pixels;
     const float size = std::sqrt(seen.pixels / view.wide.viewport_pixels);
     const float importance = node.importance >= 0.0F ? std::min(node.importance, 1.0F) : 0.0F;
     candidate.importance = importance;
     const float pixel_weight = importance * seen.focus * motion_factor(view, distance);
-    weight = {size * pixel_weight, size * importance, distance, pixel_weight, outline_of(view, node.box), mean_size_m(node.box)};
+    weight = {size * pixel_weight, size * importance, distance, pixel_weight, outline_of(view, box), sharp * mean_size_m(box)};
 
     const auto fill = [&](Choice& choice, Index r, float error_rad) {
         choice.rep = r;
-        choice.cost = item_costs_.of(r, node.box, eye, view.scale, choice.surface_px) *
+        choice.cost = item_costs_.of(r, box, eye, view.scale, choice.surface_px) *
                       (model::is_full_detail(node, r, model_.reps[r].error_m) ? view.full_factor : view.coarse_factor);
         choice.surface_px *= view.wide.viewport_pixels / view.scale.viewport_pixels;  // of full resolution
         choice.error_rad = error_rad;
-        choice.benefit =
-            benefit_of(weight.weight, accuracy_gain(error_rad, view.resolved_rad), unusable_penalty(weight.size, error_rad));
+        choice.benefit = benefit_of(weight.weight, accuracy_gain(error_rad, view.resolved_rad / sharp),
+                                    unusable_penalty(weight.size, error_rad));
         choice.subtree_benefit = choice.benefit;
         choice.triangles = model_.reps[r].triangles;
     };

@@ -8,6 +8,7 @@
 #include "render/model/cost.hpp"
 #include "render/model/item_costs.hpp"
 #include "render/model/model.hpp"
+#include "render/model/moving.hpp"
 #include "render/prepare/prepared.hpp"
 
 namespace surefoot::prepare {
@@ -23,8 +24,12 @@ struct RegionView {
     bool full_depth = false;
     float full_factor = 1, coarse_factor = 1;  ///< on the costs of full detail and of all other forms
     float focus_strength = 0.5F;
-    float speed_mps = 0, turn_rps = 0;
+    float speed_mps = 0, turn_rps = 0;  ///< of the eye
+    float object_mps = 0;               ///< of what is evaluated, where it moves
 };
+
+/// The view as a moving thing has it: turned and moved back, so that the thing stands at rest. The region grows by its drift.
+RegionView seen_at_rest(const RegionView& view, const model::MovingNode& moving);
 
 /// Metres between the node's box and the nearest eye of the region; 0 inside.
 float nearest_distance(const RegionView& view, const Box& box);
@@ -96,8 +101,12 @@ public:
 
     /// Fills `candidate.pixels` and the choices, at most `rep_count` of the node; returns their number. Requires candidate.node.
     /// The choices have benefit = 0.5 weight x gain + 0.5 unusable (see README.md). Cost is not in it yet, and it is not yet
-    /// monotone down the tree.
-    std::uint32_t evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices, Weight& weight) const;
+    /// monotone down the tree. box: the node's, as the view has it; what moves stands at rest in both.
+    std::uint32_t evaluate(const RegionView& view, const Box& box, float nearest_m, Candidate& candidate, Choice* choices,
+                           Weight& weight) const;
+    std::uint32_t evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices, Weight& weight) const {
+        return evaluate(view, model_.nodes[candidate.node].box, nearest_m, candidate, choices, weight);
+    }
 
     [[nodiscard]] const model::ItemCosts& item_costs() const { return item_costs_; }
 

@@ -90,6 +90,7 @@ Occluders find_occluders(const model::Model& model, std::uint32_t max_occluders)
     for (const model::Node& node : model.nodes) {
         if (node.child_count > 0) continue;
         const model::Representation& finest = model.reps[node.first_rep + node.rep_count - 1];
+        if (model.placements[finest.placement].motion != model::none) continue;  // it may be gone in the next frame
         if (finest.kind == model::RepKind::mesh) offer_leaf(model, finest, order, largest);
     }
     // In a small model a tenth of a millimetre may be a gap that one looks through.

@@ -66,6 +66,7 @@ struct Preparer::Impl {
     const model::CostModel& costs;
     PrepareOptions options;
     Evaluator evaluator;
+    model::MovingNodes moving;
     Occluders occluders;
     Occlusion occlusion;
     Workers workers;
@@ -94,6 +95,7 @@ struct Preparer::Impl {
     template <class Body>
     void for_chunks(std::uint32_t count, const Body& body);
     RegionView view_of(const PreparedFrame& frame, double speed_mps, double turn_rps) const;
+    [[nodiscard]] const Box& box_of(Index node, Box& now) const;
     NodeVisit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
     void visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j);
     void expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end, PreparedFrame& out);
@@ -111,6 +113,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
       costs(c),
       options(o),
       evaluator(m, c),
+      moving(m),
       occluders(o.occlusion ? find_occluders(m) : Occluders{}),
       occlusion(occluders),
       workers(o.workers, o.worker_hooks),
@@ -197,13 +200,21 @@ RegionView Preparer::Impl::view_of(const PreparedFrame& frame, double speed_mps,
     return view;
 }
 
+/// A node's box while the set is used. now: room for it, if it moves.
+const Box& Preparer::Impl::box_of(Index node, Box& now) const {
+    if (!moving.any()) return model.nodes[node].box;
+    return now = moving.box(node);
+}
+
 NodeVisit Preparer::Impl::visit_of(const RegionView& view, Index index, Index parent, PlaneMask mask) const {
     const model::Node& node = model.nodes[index];
     NodeVisit visit;
     visit.node = index;
     visit.parent = parent;
     visit.rep_count = node.rep_count;
-    visit.nearest_m = nearest_distance(view, node.box);
+    const auto moves = moving.find(index);
+    visit.nearest_m = moves && !moves->everywhere ? nearest_distance(seen_at_rest(view, *moves), moves->rest)
+                                                  : nearest_distance(view, node.box);
     visit.mask = mask;
     visit.open = node.child_count > 0 && (view.full_depth || finest_error(model, node, visit.nearest_m) >
                                                                  view.target_error_rad * error_distance(visit.nearest_m));
@@ -215,9 +226,11 @@ void Preparer::Impl::visit_children(const RegionView& view, const model::Frustum
     const model::Node& node = model.nodes[parent.node];
     std::uint32_t at = slot_first[j], hidden = 0;
     for (Index child = node.first_child; child < node.first_child + node.child_count; ++child) {
-        const PlaneMask mask = cull_planes(frustum, model.nodes[child].box, parent.mask);
+        Box now;
+        const Box& box = box_of(child, now);
+        const PlaneMask mask = cull_planes(frustum, box, parent.mask);
         if (mask == culled) continue;
-        if (occlusion.hides(model.nodes[child].box))
+        if (occlusion.hides(box))
             slots[slot_first[j] + node.child_count - ++hidden].node = child;
         else
             slots[at++] = visit_of(view, child, block[j], mask);
@@ -240,8 +253,9 @@ void Preparer::Impl::close_up_block(const RegionView& view, PreparedFrame& out) 
         }
         choice_bound += reps;
         const std::uint32_t end = slot_first[j] + model.nodes[parent.node].child_count;  // what is hidden stands there
+        Box now;
         for (std::uint32_t k = 1; k <= slot_hidden[j] && hidden_nodes.size() < max_hidden; ++k)
-            hidden_nodes.push_back({outline_of(view, model.nodes[slots[end - k].node].box), block[j]});
+            hidden_nodes.push_back({outline_of(view, box_of(slots[end - k].node, now)), block[j]});
         parent.first_child = static_cast<Index>(visits.size());
         parent.child_count = slot_count[j];
         const auto first = slots.begin() + slot_first[j];
@@ -332,7 +346,14 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
                 for (Index k = visit.first_child; k < end; ++k) candidate.child_count += visits[k].live ? 1U : 0U;
             }
             candidate.first_choice = choice;
-            choice += evaluator.evaluate(view, visit.nearest_m, candidate, &out.choices[choice], weights[candidate_of[i]]);
+            const auto moves = moving.find(visit.node);
+            Weight& weight = weights[candidate_of[i]];
+            Choice* const choices = &out.choices[choice];
+            if (moves)
+                choice +=
+                    evaluator.evaluate(seen_at_rest(view, *moves), moves->rest, visit.nearest_m, candidate, choices, weight);
+            else
+                choice += evaluator.evaluate(view, visit.nearest_m, candidate, choices, weight);
             out.candidates[candidate_of[i]] = candidate;
         }
         chunk_count[chunk] = choice - chunk_choice[chunk];
@@ -408,6 +429,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.last_speed_mps = speed_mps;
     s.last_turn_rps = turn_rps;
     s.used_factor = s.target_factor;
+    s.moving.set_span(out.from_s, out.to_s);
     const RegionView view = s.view_of(out, speed_mps, turn_rps);
     out.target_error_rad = view.full_depth ? 0.0F : view.target_error_rad;
 
@@ -432,7 +454,8 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.tried.full_factor = out.full_factor;
     s.tried.coarse_factor = out.coarse_factor;
     s.shown_px = s.shown.run(s.weights, out.candidates, out.choices, view.wide, view.scale,
-                             {&s.model, &s.evaluator.item_costs().estimator(), view.eye}, s.hidden_nodes);
+                             {&s.model, &s.evaluator.item_costs().estimator(), view.eye, s.moving.any() ? &s.moving : nullptr},
+                             s.hidden_nodes);
     s.set_values(view, out);
     propagate_up(s.costs.combine, view.resolved_rad, s.weights, out);
     enforce_monotone_benefit(out);

@@ -77,6 +77,7 @@ struct ValueCurve {
 struct PreparedFrame {
     std::uint64_t frame = 0;  ///< the frame whose pose was newest when preparation began
     Region region;
+    double from_s = 0, to_s = 0;  ///< times of the pictures that it is for: where what moves may be
     model::Viewport viewport;
     std::vector<Candidate> candidates;  ///< reserved at start; never grows after; empty: nothing is visible
     std::vector<Choice> choices;

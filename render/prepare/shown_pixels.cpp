@@ -141,8 +141,13 @@ bool ShownPixels::draw(std::uint32_t leaf, const Candidate& candidate, const Cho
     const model::PixelEstimator::Pieces of{points >= large_points, 16 + static_cast<std::uint32_t>(samples_a_point * points)};
     const model::Representation& rep = surfaces.model->reps[finest.rep];
     work_ += work_a_piece * std::min(rep.triangles, of.each_triangle ? static_cast<std::uint32_t>(pieces_.size()) : 256U);
-    const std::ptrdiff_t count = surfaces.estimator->pieces(
-        *surfaces.model, finest.rep, surfaces.model->nodes[candidate.node].box, surfaces.eye, wide, of, std::span(pieces_));
+    const auto pieces_in = [&](const Box& box, const dvec3& eye, const model::ViewScale& view) {
+        return surfaces.estimator->pieces(*surfaces.model, finest.rep, box, eye, view, of, std::span(pieces_));
+    };
+    const auto moving = surfaces.moving != nullptr ? surfaces.moving->find(candidate.node) : std::nullopt;
+    const std::ptrdiff_t count =
+        moving ? pieces_in(moving->rest, moving->pose.back(surfaces.eye), model::turned_back(wide, moving->pose))
+               : pieces_in(surfaces.model->nodes[candidate.node].box, surfaces.eye, wide);
     if (count < 0) return false;
     const Range x = range_of(outline.left, outline.right, across), y = range_of(outline.low, outline.high, down);
     const ItemBuffer::Item item{leaf,
@@ -216,7 +221,8 @@ std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::sp
     for (const std::uint32_t i : order_) {
         float depth_m = weights[i].distance_m;
         if (surfaces.model != nullptr) {
-            const Box& box = surfaces.model->nodes[candidates[i].node].box;
+            const Box box = surfaces.moving != nullptr ? surfaces.moving->box(candidates[i].node)
+                                                       : surfaces.model->nodes[candidates[i].node].box;
             depth_m =
                 glm::dot(wide.forward, vec3(box.centre() - surfaces.eye)) - glm::dot(glm::abs(wide.forward), vec3(box.half()));
         }

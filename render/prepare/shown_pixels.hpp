@@ -20,6 +20,7 @@ struct LeafSurfaces {
     const model::Model* model = nullptr;
     const model::PixelEstimator* estimator = nullptr;
     dvec3 eye{0.0};
+    const model::MovingNodes* moving = nullptr;  ///< null: all stand still
 };
 
 /// The points of an item buffer give what a large leaf shows. Small leaves go over the same points from near to far.

@@ -73,22 +73,23 @@ int run_effects(const EffectsArguments& a) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     const report::Columns columns({{"effect", 14}, {"called for", 11}, {"triangles", -12}, {"reason", 0, 2}});
     if (!a.json) fmt::print("{}\n", columns.heading());
-    for (const effects::EffectModule& effect : effects::all_effects()) {
-        for (const model::EffectFinding& f : m->effects) {
-            if (f.bit != effect.bit) continue;
-            if (a.json) {
-                list.push_back({{"effect", std::string(effect.name)},
-                                {"what", std::string(effect.help)},
-                                {"asked_by", std::string(effect.requested_by)},
-                                {"called_for", f.called_for},
-                                {"triangles", f.triangles},
-                                {"reason", f.reason}});
-            } else {
-                fmt::print("{}\n", columns.row({std::string(effect.name), f.called_for ? "yes" : "no",
-                                                std::to_string(f.triangles), f.reason}));
-            }
+    const auto show = [&](std::string_view name, std::string_view what, std::string_view asks, const model::EffectFinding& f) {
+        if (a.json) {
+            list.push_back({{"effect", std::string(name)},
+                            {"what", std::string(what)},
+                            {"asked_by", std::string(asks)},
+                            {"called_for", f.called_for},
+                            {"triangles", f.triangles},
+                            {"reason", f.reason}});
+        } else {
+            fmt::print("{}\n",
+                       columns.row({std::string(name), f.called_for ? "yes" : "no", std::to_string(f.triangles), f.reason}));
         }
-    }
+    };
+    for (const effects::EffectModule& effect : effects::all_effects())
+        for (const model::EffectFinding& f : m->effects)
+            if (f.bit == effect.bit) show(effect.name, effect.help, effect.requested_by, f);
+    show("motion", "nodes move as animations say, and loop; no program of its own", "animated nodes", model::motion_finding(*m));
     if (a.json) print_json({{"model", a.request.model_file}, {"effects", list}});
     return exit_success;
 }

@@ -127,6 +127,7 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
 
     engine.device().draws.plays();
     show_light(engine, snapshot.light);
+    engine.set_time(snapshot.time_s);
     engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
@@ -171,6 +172,7 @@ Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::
         progress.update("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
         const FrameSnapshot& snapshot = store.snapshots()[i];
         show_light(engine, snapshot.light);
+        engine.set_time(snapshot.time_s);
         engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();

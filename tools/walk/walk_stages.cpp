@@ -24,6 +24,7 @@ float accuracy_of(float error_rad) {
     return error_rad > model::exact_up_to_rad ? 1.0F / error_rad : std::numeric_limits<float>::infinity();
 }
 
+constexpr int skipped_periods = 2;        // that a set may be older than its frames say, without things that moved away
 constexpr double max_margin_share = 0.2;  // of the mean limit: more would only draw everything coarse
 
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
@@ -121,6 +122,9 @@ PrepareHints WalkStages::hints() const {
         hints.planned_us[step] = planned_us(drawn, 0) / (factor * drawn.headroom);
     }
     if (request_.correct_costs) hints.form_ratio = forms_.ratio();
+    hints.time_s = walk_time_s();
+    const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
+    hints.span_s = horizon_s(period_s) + skipped_periods * period_s;
     return hints;
 }
 
@@ -196,6 +200,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
             now_.predicted = newest.predicted;
             now_.dt_s = period_s;
         }
+        now_.hints.time_s = walk_time_s();  // it is known when the frame is due
         prepare_inline();
     }
     now_.before = unseen ? newest.before : now_.pose;
@@ -235,6 +240,7 @@ void WalkStages::take(const FramePose& from, rt::FrameRecord& record) {
     record.stopped = from.stopped;
     record.light = light_at(from);
     show(record.light);
+    engine_.set_time(walk_time_s());
 }
 
 /// What came while the cut was chosen still counts, as far as the cut was made for it.
@@ -262,7 +268,8 @@ void WalkStages::select(rt::FrameRecord& record) {
     const Correction before = correction_at(set.resolution, filtered_);
     record.correction = static_cast<float>(before.factor);
     record.budget_us = static_cast<float>(planned_us(before, 0));
-    coarse_ = age > rt::oldest_prepared(options_.period_ns) || !covers(set.region, now_.pose, set.viewport);
+    const bool moved_on = !engine_.model().motions.empty() && walk_time_s() > set.to_s + 1e-6;  // where things were
+    coarse_ = age > rt::oldest_prepared(options_.period_ns) || moved_on || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
         engine_.select_last();
         return;

@@ -130,6 +130,7 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
     if (picture.walk.empty() || picture.full.empty()) return {};
     engine_.device().draws.plays();
     show_light(engine_, snapshot.light);
+    engine_.set_time(snapshot.time_s);
     const SquaredErrors wrong(picture.walk, picture.full, width, height);
     mse_ += picture.mse;
     const model::Model& model = engine_.model();

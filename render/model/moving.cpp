@@ -1,0 +1,89 @@
+// Boxes of moving nodes (moving.hpp).
+#include "render/model/moving.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::model {
+
+namespace {
+
+bool has_jumps(const Model& model, Index motion) {
+    for (Index m = motion; m != none; m = model.motions[m].outer) {
+        const Motion& one = model.motions[m];
+        for (std::uint32_t k = one.first_key + 1; k < one.first_key + one.key_count; ++k)
+            if (!(model.motion_keys[k].time_s > model.motion_keys[k - 1].time_s)) return true;
+    }
+    return false;
+}
+
+dvec3 corner_of(const Box& box, unsigned c) {
+    return {(c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y, (c & 4U) != 0 ? box.max.z : box.min.z};
+}
+
+}  // namespace
+
+Box MovingNode::box() const {
+    const dvec3 centre = pose(rest.centre()), half = rest.half();
+    const dmat3 turn = glm::mat3_cast(pose.rotation);
+    const dvec3 reach = glm::abs(turn[0]) * half.x + glm::abs(turn[1]) * half.y + glm::abs(turn[2]) * half.z + drift_m;
+    return {centre - reach, centre + reach};
+}
+
+MovingNodes::MovingNodes(const Model& model) : model_(&model) {
+    if (model.motions.empty()) return;
+    slot_of_node_.assign(model.nodes.size(), none);
+    for (Index n = 0; n < model.nodes.size(); ++n) {
+        const Node& node = model.nodes[n];
+        Slot slot;
+        slot.motion = motion_of(model, node);
+        if (slot.motion == none) continue;
+        slot.rest = rest_box_of(model, node);
+        slot.max_speed_mps = reach_of(model, slot.motion, slot.rest).speed_mps;
+        slot.jumps = has_jumps(model, slot.motion);
+        slot_of_node_[n] = static_cast<Index>(slots_.size());
+        slots_.push_back(slot);
+        if (node.parent == none || slot_of_node_[node.parent] == none) roots_.push_back(n);
+    }
+    if (slots_.empty()) slot_of_node_.clear();
+}
+
+void MovingNodes::set_span(double from_s, double to_s) {
+    from_s_ = std::isfinite(from_s) ? from_s : 0;
+    to_s_ = std::isfinite(to_s) ? std::max(to_s, from_s_) : from_s_;
+}
+
+std::optional<MovingNode> MovingNodes::find(Index index) const {
+    if (slot_of_node_.empty() || slot_of_node_[index] == none) return {};
+    const Slot& slot = slots_[slot_of_node_[index]];
+    MovingNode node;
+    node.rest = slot.rest;
+    const double half_s = 0.5 * (to_s_ - from_s_), middle_s = from_s_ + half_s;
+    node.pose = pose_at(*model_, slot.motion, middle_s);
+    node.drift_m = slot.max_speed_mps * half_s * (1 + 1e-9);
+    node.everywhere = slot.jumps && half_s > 0;
+    const double around_s = std::max(half_s, 0.005);  // a moment has a speed as well
+    const RigidPose before = pose_at(*model_, slot.motion, middle_s - around_s);
+    const RigidPose after = pose_at(*model_, slot.motion, middle_s + around_s);
+    double way_m = 0;
+    for (unsigned c = 0; c < 8; ++c) {
+        const dvec3 corner = corner_of(node.rest, c);
+        way_m = std::max(way_m, glm::length(after(corner) - before(corner)));
+    }
+    node.speed_mps = std::min(way_m / (2 * around_s), slot.max_speed_mps);
+    return node;
+}
+
+Box MovingNodes::box(Index node) const {
+    const std::optional<MovingNode> moving = find(node);
+    return !moving || moving->everywhere ? model_->nodes[node].box : moving->box();
+}
+
+ViewScale turned_back(const ViewScale& scale, const RigidPose& pose) {
+    const glm::quat back(glm::conjugate(pose.rotation));
+    ViewScale out = scale;
+    for (vec3* axis : {&out.right, &out.up, &out.forward, &out.across, &out.rise, &out.middle}) *axis = back * *axis;
+    return out;
+}
+
+}  // namespace surefoot::model
