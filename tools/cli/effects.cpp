@@ -73,11 +73,12 @@ int run_effects(const EffectsArguments& a) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     const report::Columns columns({{"effect", 14}, {"called for", 11}, {"triangles", -12}, {"reason", 0, 2}});
     if (!a.json) fmt::print("{}\n", columns.heading());
-    const auto show = [&](std::string_view name, std::string_view what, std::string_view asks, const model::EffectFinding& f) {
+    const auto show = [&](std::string_view name, std::string_view what, std::string_view requested_by,
+                          const model::EffectFinding& f) {
         if (a.json) {
             list.push_back({{"effect", std::string(name)},
                             {"what", std::string(what)},
-                            {"asked_by", std::string(asks)},
+                            {"asked_by", std::string(requested_by)},
                             {"called_for", f.called_for},
                             {"triangles", f.triangles},
                             {"reason", f.reason}});
