@@ -20,7 +20,9 @@ Between between_of(const std::string& interpolation) {
     return interpolation == "STEP" ? Between::step : interpolation == "CUBICSPLINE" ? Between::spline : Between::linear;
 }
 
-bool finite_values(const dvec4& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w); }
+bool finite_values(const dvec4& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+}
 
 template <class T>
 bool holds_index(const std::vector<T>& list, int index) {
@@ -97,7 +99,8 @@ void AnimationReader::refuse(int node, Flaw flaw, const std::string& why) {
 
 void AnimationReader::read_channel(int animation, const tinygltf::AnimationChannel& channel) {
     const int node = channel.target_node;
-    if (!holds_index(nodes_, node) || !holds_index(model_.animations[static_cast<std::size_t>(animation)].samplers, channel.sampler))
+    if (!holds_index(nodes_, node) ||
+        !holds_index(model_.animations[static_cast<std::size_t>(animation)].samplers, channel.sampler))
         return flawed(Flaw::broken, fmt::format("Animation '{}': a channel is ignored, since its node or sampler does not exist",
                                                 name_of_animation(animation)));
     const auto at = static_cast<std::size_t>(node);
@@ -133,7 +136,8 @@ bool AnimationReader::read_track(int animation, const tinygltf::AnimationChannel
         model_.animations[static_cast<std::size_t>(animation)].samplers[static_cast<std::size_t>(channel.sampler)];
     const std::string place = fmt::format("{}: animation '{}'", file_, name_of_animation(animation));
     for (const int accessor : {sampler.input, sampler.output}) {
-        if (!holds_index(model_.accessors, accessor)) return refuse(node, Flaw::broken, "an accessor of its animation is missing"), false;
+        if (!holds_index(model_.accessors, accessor))
+            return refuse(node, Flaw::broken, "an accessor of its animation is missing"), false;
         if (model_.accessors[static_cast<std::size_t>(accessor)].count > 3 * max_keys_of_motion)
             return refuse(node, Flaw::keys, fmt::format("its animation has more than {} keys", max_keys_of_motion)), false;
     }
