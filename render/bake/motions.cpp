@@ -21,29 +21,37 @@ public:
     explicit TreeJoiner(std::size_t objects) : objects_(static_cast<std::uint32_t>(objects)) {}
 
     /// `entities`: what the part's objects stand for. Returns its root as an entity of the whole.
-    std::uint32_t add(ClusterTree part, std::span<const std::uint32_t> entities, Index motion, double displacement_m) {
+    std::uint32_t add(ClusterTree part, std::span<const std::uint32_t> entities, Index motion) {
         const auto own = static_cast<std::uint32_t>(entities.size());
         const auto base = static_cast<std::uint32_t>(tree_.clusters.size());
         const auto renamed = [&](std::uint32_t e) { return e < own ? entities[e] : objects_ + base + (e - own); };
         for (ClusterTree::Cluster& cluster : part.clusters) {
             for (std::uint32_t& child : cluster.children) child = renamed(child);
             cluster.motion = motion;
-            cluster.displacement_m = displacement_m;
             tree_.clusters.push_back(std::move(cluster));
         }
         return renamed(part.root);
     }
     /// A cluster above two others.
-    void add_root(std::uint32_t still, std::uint32_t moving, const Box& box, double displacement_m) {
-        tree_.clusters.push_back({box, {still, moving}, model::none, displacement_m});
-        std::sort(tree_.clusters.back().children.begin(), tree_.clusters.back().children.end());
-        tree_.root = objects_ + static_cast<std::uint32_t>(tree_.clusters.size() - 1);
+    std::uint32_t join(std::uint32_t a, std::uint32_t b, const Box& box) {
+        tree_.clusters.push_back({box, {std::min(a, b), std::max(a, b)}});
+        return objects_ + static_cast<std::uint32_t>(tree_.clusters.size() - 1);
     }
-    ClusterTree take(std::uint32_t root) {
+    /// displacements_m: of the entities that move though what is above them does not.
+    ClusterTree take(std::uint32_t root, const std::map<std::uint32_t, double>& displacements_m) {
+        for (ClusterTree::Cluster& cluster : tree_.clusters) {  // children come first
+            if (cluster.motion != model::none) continue;
+            for (const std::uint32_t child : cluster.children) {
+                const auto moves = displacements_m.find(child);
+                const double of_child = moves != displacements_m.end() ? moves->second
+                                        : child < objects_             ? 0
+                                                                       : tree_.clusters[child - objects_].displacement_m;
+                cluster.displacement_m = std::max(cluster.displacement_m, of_child);
+            }
+        }
         tree_.root = root;
         return std::move(tree_);
     }
-    ClusterTree take() { return std::move(tree_); }
 
 private:
     std::uint32_t objects_;
@@ -123,19 +131,18 @@ ClusterTree cluster_objects(std::span<const PlacedObject> objects, const model::
         (objects[i].motion == model::none ? still : by_motion[objects[i].motion]).add(i, objects[i].box);
     if (by_motion.empty()) return grow_clusters(still.boxes, max_children);
     TreeJoiner joiner(objects.size());
-    double displacement_m = 0;
+    std::map<std::uint32_t, double> displacements_m;
     for (const auto& [motion, members] : by_motion) {
         const model::MotionReach reach = model::reach_of(model, motion, members.box);
-        displacement_m = std::max(displacement_m, reach.displacement_m);
-        moving.add(joiner.add(grow_clusters(members.boxes, max_children), members.objects, motion, 0), reach.box);
+        const std::uint32_t entity = joiner.add(grow_clusters(members.boxes, max_children), members.objects, motion);
+        displacements_m[entity] = reach.displacement_m;
+        moving.add(entity, reach.box);
     }
-    const std::uint32_t movers =
-        joiner.add(grow_clusters(moving.boxes, max_children), moving.objects, model::none, displacement_m);
-    if (still.objects.empty()) return joiner.take(movers);
-    const std::uint32_t rest = joiner.add(grow_clusters(still.boxes, max_children), still.objects, model::none, 0);
+    const std::uint32_t movers = joiner.add(grow_clusters(moving.boxes, max_children), moving.objects, model::none);
+    if (still.objects.empty()) return joiner.take(movers, displacements_m);
+    const std::uint32_t rest = joiner.add(grow_clusters(still.boxes, max_children), still.objects, model::none);
     still.box.grow(moving.box);
-    joiner.add_root(rest, movers, still.box, displacement_m);
-    return joiner.take();
+    return joiner.take(joiner.join(rest, movers, still.box), displacements_m);
 }
 
 void add_displacement(LodChain& chain, double displacement_m) {

@@ -56,7 +56,7 @@ double scale_of(const dmat4& parent) {
     return std::max({glm::length(dvec3(parent[0])), glm::length(dvec3(parent[1])), glm::length(dvec3(parent[2]))});
 }
 
-bool same(const NodePose& a, const NodePose& b, double scale, double max_m, double max_rad) {
+bool same_poses(const NodePose& a, const NodePose& b, double scale, double max_m, double max_rad) {
     return scale * glm::length(a.translation - b.translation) <= max_m && angle_between(a.rotation, b.rotation) <= max_rad;
 }
 
@@ -90,7 +90,7 @@ public:
             const NodePose before = pose_of(tracks_, times[i], i == 0), after = pose_of(tracks_, times[i], true);
             if (curved && i > 0) cut_chord(poses_.back(), {times[i], before}, 0);
             poses_.push_back({times[i], before});
-            if (!same(before, after, 1, 0, 1e-9)) poses_.push_back({times[i], after});
+            if (!same_poses(before, after, 1, 0, 1e-9)) poses_.push_back({times[i], after});
         }
         return std::move(poses_);
     }
@@ -103,7 +103,7 @@ private:
             const NodePose at = pose_of(tracks_, glm::mix(a.time_s, b.time_s, share), true);
             const NodePose chord{glm::mix(a.pose.translation, b.pose.translation, share),
                                  glm::slerp(a.pose.rotation, b.pose.rotation, share)};
-            near = near && same(at, chord, scale_, spline_tolerance_m, spline_tolerance_rad);
+            near = near && same_poses(at, chord, scale_, spline_tolerance_m, spline_tolerance_rad);
         }
         if (near) return;
         const double middle = 0.5 * (a.time_s + b.time_s);
@@ -141,8 +141,8 @@ bool keeps_angles(const dmat4& parent) {
 }
 
 bool loops(const NodeTracks& tracks) {
-    return same(pose_of(tracks, tracks.from_s, true), pose_of(tracks, tracks.to_s, true), scale_of(tracks.parent), same_pose_m,
-                same_pose_rad);
+    return same_poses(pose_of(tracks, tracks.from_s, true), pose_of(tracks, tracks.to_s, true), scale_of(tracks.parent),
+                      same_pose_m, same_pose_rad);
 }
 
 bool stays(const NodeTracks& tracks) {
@@ -150,7 +150,7 @@ bool stays(const NodeTracks& tracks) {
     const std::vector<double> times = times_of(tracks);
     const bool curved = tracks.translation.between == Between::spline || tracks.rotation.between == Between::spline;
     const auto at_rest = [&](double t, bool after) {
-        return same(pose_of(tracks, t, after), tracks.rest, scale, same_pose_m, same_pose_rad);
+        return same_poses(pose_of(tracks, t, after), tracks.rest, scale, same_pose_m, same_pose_rad);
     };
     for (std::size_t i = 0; i < times.size(); ++i) {
         if (!at_rest(times[i], false) || !at_rest(times[i], true)) return false;
