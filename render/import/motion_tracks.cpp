@@ -178,6 +178,11 @@ std::vector<model::MotionKey> keys_of(const NodeTracks& tracks, bool forth_and_b
                         frame * (one.pose.translation - tracks.rest.translation),
                         {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)}});
     }
+    if (!forth_and_back) {  // no jump remains, however small
+        const bool other_sign = glm::dot(poses.front().pose.rotation, poses.back().pose.rotation) < 0;
+        keys.back().translation = keys.front().translation;
+        for (std::size_t i = 0; i < 4; ++i) keys.back().rotation[i] = keys.front().rotation[i] * (other_sign ? -1.0F : 1.0F);
+    }
     keys.front().time_s = 0;
     keys.back().time_s = forth_and_back ? 2 * length : length;
     return keys;

@@ -8,9 +8,22 @@ namespace surefoot::model {
 
 namespace {
 
+/// Beyond rounding.
+bool is_other_pose(const MotionKey& a, const MotionKey& b) {
+    float same = 0, turned = 0;  // a quaternion and its negative are one rotation
+    for (std::size_t i = 0; i < 4; ++i) {
+        same = std::max(same, std::abs(a.rotation[i] - b.rotation[i]));
+        turned = std::max(turned, std::abs(a.rotation[i] + b.rotation[i]));
+    }
+    return std::min(same, turned) > 1e-6F || glm::length(a.translation - b.translation) > 1e-6;
+}
+
+/// Between two keys at one time, or from the end to the start.
 bool has_jumps(const Model& model, Index motion) {
     for (Index m = motion; m != none; m = model.motions[m].outer) {
         const Motion& one = model.motions[m];
+        const MotionKey* const keys = &model.motion_keys[one.first_key];
+        if (is_other_pose(keys[0], keys[one.key_count - 1])) return true;
         for (std::uint32_t k = one.first_key + 1; k < one.first_key + one.key_count; ++k)
             if (!(model.motion_keys[k].time_s > model.motion_keys[k - 1].time_s)) return true;
     }

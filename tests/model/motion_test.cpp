@@ -119,11 +119,8 @@ TEST(Motion, ReachHoldsAtAHundredThousandRandomTimes) {
             const dvec3 x = box.min + share * (box.max - box.min), at = pose(x);
             ASSERT_TRUE(reach.box.contains({at, at})) << "round " << round << ", time " << t;
             ASSERT_LE(apart(at, x), reach.displacement_m);
-            if (!jumps && apart(later(x), at) > 1e-4 * reach.speed_mps * (1 + 1e-6)) {
-                bool wraps = false;  // from the last pose to the first it jumps
-                for (const Motion& one : m.motions)
-                    wraps = wraps || std::floor(t / one.period_s) != std::floor((t + 1e-4) / one.period_s);
-                ASSERT_TRUE(wraps) << "round " << round << ", time " << t;
+            if (!jumps) {
+                ASSERT_LE(apart(later(x), at), 1e-4 * reach.speed_mps * (1 + 1e-6) + 1e-9) << "round " << round << ", time " << t;
             }
             seen.grow(at);
         }
@@ -153,8 +150,9 @@ Model one_that_moves(const Model& motions) {
     return m;
 }
 
-TEST(MovingNodes, HoldTheNodeWithinASpanAndTheirSpeedIsThatOfTheSpan) {
+TEST(MovingNodes, HoldTheNodeWithinASpan) {
     Random random(11);
+    int bounded = 0;
     for (int round = 0; round < 300; ++round) {
         Model motions;
         Index outer = none;
@@ -169,12 +167,10 @@ TEST(MovingNodes, HoldTheNodeWithinASpanAndTheirSpeedIsThatOfTheSpan) {
         nodes.set_span(from_s, from_s + span_s);
         const auto moving = nodes.find(2);
         ASSERT_TRUE(moving);
+        EXPECT_LE(moving->speed_mps, reach_of(m, m.placements[1].motion, moving->rest).speed_mps);
+        bounded += moving->everywhere ? 0 : 1;
         for (int i = 0; i < 50; ++i) {
             const double t = from_s + span_s * random.unit();
-            bool wraps = false;
-            for (const Motion& one : m.motions)
-                wraps = wraps || std::floor(from_s / one.period_s) != std::floor(t / one.period_s);
-            if (wraps && !moving->everywhere) continue;  // these motions do not end where they begin
             const RigidPose pose = pose_at(m, m.placements[1].motion, t);
             for (const vec3& v : {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)}) {
                 const dvec3 at = pose(m.placements[1].origin + dvec3(v));
@@ -183,6 +179,7 @@ TEST(MovingNodes, HoldTheNodeWithinASpanAndTheirSpeedIsThatOfTheSpan) {
             }
         }
     }
+    EXPECT_GT(bounded, 150) << "of the others the box over all times holds";
 }
 
 TEST(MovingNodes, AreNoneWhereAllStandsStill) {

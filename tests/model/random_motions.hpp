@@ -23,7 +23,7 @@ inline std::array<float, 4> random_rotation(Random& random) {
     return {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
 }
 
-/// jumps: some keys are at one time.
+/// It ends as it began. jumps: some keys are at one time.
 inline Index add_motion(Model& model, Random& random, Index outer = none, bool jumps = true) {
     Motion motion;
     motion.pivot = point_within(random, 10);
@@ -36,7 +36,9 @@ inline Index add_motion(Model& model, Random& random, Index outer = none, bool j
         if (k + 1 < motion.key_count && !(jumps && random.unit() < 0.2)) time_s += within(random, 0.05, 3);
     }
     motion.period_s = time_s > 0 ? time_s : 1;
-    if (motion.key_count > 1 && !(time_s > 0)) model.motion_keys.back().time_s = 1;
+    MotionKey& last = model.motion_keys.back();
+    if (motion.key_count > 1)
+        last = {motion.period_s, model.motion_keys[motion.first_key].translation, model.motion_keys[motion.first_key].rotation};
     model.motions.push_back(motion);
     return static_cast<Index>(model.motions.size() - 1);
 }
