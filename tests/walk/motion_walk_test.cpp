@@ -40,7 +40,7 @@ struct MotionWalk : testing::Test {
         r.backend = "null";
         r.clock = rt::ClockKind::virtual_time;
         r.frames = frames;
-        r.state_dir = folder;
+        r.state_dir = folder / "";
         return r;
     }
 };
