@@ -14,9 +14,9 @@
 namespace surefoot::model {
 namespace {
 
-using test::add_motion;
-using test::point_within;
-using test::within;
+using surefoot::test::add_motion;
+using surefoot::test::point_within;
+using surefoot::test::within;
 
 constexpr float half_turn = 0.70710678F;  // of a quarter turn's quaternion
 
@@ -47,8 +47,8 @@ TEST(Motion, LoopsAtAnyTime) {
     for (const double laps : {-1e6, -3.0, -1.0, 1.0, 7.0, 1e6, 1e9})
         EXPECT_LT(apart(pose_at(m, 0, 1.25 + 4 * laps)(x), at), 1e-5) << laps;
     const dvec3 start = pose_at(m, 0, 0)(x);
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    for (const double no_time : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    for (const double no_time : {std::numeric_limits<double>::quiet_NaN(), endless, -endless})
         EXPECT_EQ(pose_at(m, 0, no_time)(x), start);
     for (const double huge : {1e300, -1e300, 1e-300, -1e-300, 4.0, -4.0}) {
         const dvec3 there = pose_at(m, 0, huge)(x);

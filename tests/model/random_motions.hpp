@@ -7,7 +7,7 @@
 #include "render/model/model.hpp"
 #include "rt/base/random.hpp"
 
-namespace surefoot::model::test {
+namespace surefoot::test {
 
 inline double within(Random& random, double low, double high) { return low + (high - low) * random.unit(); }
 
@@ -24,8 +24,8 @@ inline std::array<float, 4> random_rotation(Random& random) {
 }
 
 /// It ends as it began. jumps: some keys are at one time.
-inline Index add_motion(Model& model, Random& random, Index outer = none, bool jumps = true) {
-    Motion motion;
+inline model::Index add_motion(model::Model& model, Random& random, model::Index outer = model::none, bool jumps = true) {
+    model::Motion motion;
     motion.pivot = point_within(random, 10);
     motion.first_key = static_cast<std::uint32_t>(model.motion_keys.size());
     motion.key_count = 1 + static_cast<std::uint32_t>(random.below(7));
@@ -36,11 +36,11 @@ inline Index add_motion(Model& model, Random& random, Index outer = none, bool j
         if (k + 1 < motion.key_count && !(jumps && random.unit() < 0.2)) time_s += within(random, 0.05, 3);
     }
     motion.period_s = time_s > 0 ? time_s : 1;
-    MotionKey& last = model.motion_keys.back();
+    model::MotionKey& last = model.motion_keys.back();
     if (motion.key_count > 1)
         last = {motion.period_s, model.motion_keys[motion.first_key].translation, model.motion_keys[motion.first_key].rotation};
     model.motions.push_back(motion);
-    return static_cast<Index>(model.motions.size() - 1);
+    return static_cast<model::Index>(model.motions.size() - 1);
 }
 
-}  // namespace surefoot::model::test
+}  // namespace surefoot::test
