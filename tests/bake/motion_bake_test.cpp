@@ -21,7 +21,7 @@ namespace {
 using model::Index;
 using model::none;
 
-const model::Model& town() {
+const model::Model& moving_model() {
     static const model::Model baked = [] {
         auto m = bake(moving_town(), {}, {});
         EXPECT_TRUE(m.ok()) << m.error().text();
@@ -38,7 +38,7 @@ std::vector<Index> moving_leaves(const model::Model& m) {
 }
 
 /// A corner of the node's full detail, at rest.
-dvec3 corner(const model::Model& m, Index node, Random& random) {
+dvec3 corner_at_rest(const model::Model& m, Index node, Random& random) {
     const model::Node& n = m.nodes[node];
     const model::Representation& rep = m.reps[n.first_rep + n.rep_count - 1];
     const model::Part& part = m.parts[rep.first_part + random.below(rep.part_count)];
@@ -62,26 +62,26 @@ TEST(MotionBake, KeepsWhatMovesAndTheMotionsThatItHas) {
 }
 
 TEST(MotionBake, BoxesHoldAtAHundredThousandRandomTimes) {
-    const model::Model& m = town();
+    const model::Model& m = moving_model();
     const std::vector<Index> leaves = moving_leaves(m);
     ASSERT_EQ(leaves.size(), 5U);
     Random random(1);
     for (int i = 0; i < 100'000; ++i) {
         const Index leaf = leaves[random.below(static_cast<std::uint32_t>(leaves.size()))];
         const double t = 1000 * random.unit() - 500;
-        const dvec3 at = model::pose_at(m, model::motion_of(m, m.nodes[leaf]), t)(corner(m, leaf, random));
+        const dvec3 at = model::pose_at(m, model::motion_of(m, m.nodes[leaf]), t)(corner_at_rest(m, leaf, random));
         for (Index n = leaf; n != none; n = m.nodes[n].parent)
             ASSERT_LE(m.nodes[n].box.distance(at), 1e-5) << "node " << n << ", time " << t;
     }
 }
 
 TEST(MotionBake, BoxesAreNotMuchLargerThanTheWay) {
-    const model::Model& m = town();
+    const model::Model& m = moving_model();
     for (const Index leaf : moving_leaves(m)) {
         Box seen;
         Random random(leaf);
         for (int i = 0; i < 20'000; ++i)
-            seen.grow(model::pose_at(m, model::motion_of(m, m.nodes[leaf]), 60 * random.unit())(corner(m, leaf, random)));
+            seen.grow(model::pose_at(m, model::motion_of(m, m.nodes[leaf]), 60 * random.unit())(corner_at_rest(m, leaf, random)));
         EXPECT_LT(m.nodes[leaf].box.diagonal(), 1.5 * seen.diagonal()) << leaf;
     }
 }
@@ -89,7 +89,7 @@ TEST(MotionBake, BoxesAreNotMuchLargerThanTheWay) {
 /// Full detail as it is at a time, and each form of each node above what moves: no point of the one is farther from the other
 /// than the form's error.
 TEST(MotionBake, ErrorsHoldAtRandomTimes) {
-    const model::Model& m = town();
+    const model::Model& m = moving_model();
     std::set<Index> nodes;
     for (const Index leaf : moving_leaves(m))
         for (Index n = leaf; n != none; n = m.nodes[n].parent) nodes.insert(n);
@@ -110,7 +110,7 @@ TEST(MotionBake, ErrorsHoldAtRandomTimes) {
 }
 
 TEST(MotionBake, FormsAboveStandAtRestAndTheirErrorSaysHowFarOffThatIs) {
-    const model::Model& m = town();
+    const model::Model& m = moving_model();
     const model::Node& root = m.nodes[0];
     ASSERT_EQ(root.child_count, 2U) << "what stands, and what moves";
     double displacement_m = 0;
@@ -130,7 +130,7 @@ TEST(MotionBake, FormsAboveStandAtRestAndTheirErrorSaysHowFarOffThatIs) {
 TEST(MotionBake, WhatStandsHasTheErrorsThatItHasAlone) {
     const auto alone = bake(small_town(), {}, {});
     ASSERT_TRUE(alone.ok());
-    const model::Model& m = town();
+    const model::Model& m = moving_model();
     const Index still = model::motion_of(m, m.nodes[m.nodes[0].first_child]) == none &&
                                 m.nodes[m.nodes[0].first_child].triangles == alone->nodes[0].triangles
                             ? m.nodes[0].first_child

@@ -19,10 +19,10 @@ namespace {
 
 using model::Index;
 
-constexpr std::int64_t frame_ns = 33'000'000;
+constexpr std::int64_t moving_frame_ns = 33'000'000;
 constexpr model::Viewport small_picture{320, 180};
 
-const model::Model& town() {
+const model::Model& moving_model() {
     static const model::Model baked = [] {
         auto m = bake::bake(bake::moving_town(), {}, {});
         EXPECT_TRUE(m.ok());
@@ -61,9 +61,9 @@ std::vector<std::uint8_t> full_picture(Engine& engine, double time_s) {
 
 /// The model with everything placed as it is at a time, and nothing that moves.
 model::Model placed_at(double time_s) {
-    model::Model still = town();
+    model::Model still = moving_model();
     for (model::Placement& p : still.placements) {
-        p = model::moved(p, model::pose_at(town(), p.motion, time_s));
+        p = model::moved(p, model::pose_at(moving_model(), p.motion, time_s));
         p.motion = model::none;
     }
     still.motions.clear();
@@ -72,7 +72,7 @@ model::Model placed_at(double time_s) {
 }
 
 TEST(Moving, APictureIsThatOfAStillSceneWithEverythingInItsPlace) {
-    auto engine = open(gl::BackendKind::egl, town());
+    auto engine = open(gl::BackendKind::egl, moving_model());
     if (engine == nullptr) GTEST_SKIP() << "no EGL";
     const std::vector<std::uint8_t> first = full_picture(*engine, 0);
     for (const double t : {1.3, 4.0, 17.7, -2.5, 1e6 + 0.1}) {
@@ -96,7 +96,7 @@ struct Frames {
         if (engine != nullptr) engine->reserve(prepared);
     }
     SubmitReport frame(const Pose& pose, double time_s) {
-        at_ns += frame_ns;
+        at_ns += moving_frame_ns;
         PrepareHints hints;
         hints.time_s = time_s;
         engine->prepare({pose, 0.25, 0.06}, 0, 0, 0, prepared, hints);
@@ -131,9 +131,9 @@ Pose look_at(const dvec3& place, double away_m, double fov_y_rad = 0.3) {
 }
 
 TEST(Moving, IsDrawnWhereItIsAndNotWhereItWas) {
-    Frames frames(gl::BackendKind::null, town());
+    Frames frames(gl::BackendKind::null, moving_model());
     ASSERT_NE(frames.engine, nullptr);
-    const Index lift = leaf_of(town(), 10);
+    const Index lift = leaf_of(moving_model(), 10);
     const Pose at_rest = look_at(dvec3(70, 6, 60), 30), above = look_at(dvec3(70, 18, 60), 30);
     frames.frame(at_rest, 0);
     EXPECT_TRUE(frames.draws(lift));
@@ -147,7 +147,7 @@ TEST(Moving, IsDrawnWhereItIsAndNotWhereItWas) {
 
 /// Errors by the nearest place that it may have in the span.
 TEST(Moving, ErrorsAreThoseFromWhereItIs) {
-    const model::Model& m = town();
+    const model::Model& m = moving_model();
     const Index lift = leaf_of(m, 10);
     prepare::PreparedFrame set;
     auto engine = open(gl::BackendKind::null, m);
@@ -183,7 +183,7 @@ TEST(Moving, ErrorsAreThoseFromWhereItIs) {
 }
 
 TEST(Moving, NeverRestsInViewAndRestsElsewhere) {
-    Frames frames(gl::BackendKind::null, town(), 200);
+    Frames frames(gl::BackendKind::null, moving_model(), 200);
     ASSERT_NE(frames.engine, nullptr);
     bool rested = false;
     for (int i = 0; i < 60; ++i) rested = rested || frames.frame(overlook(), 0.033 * i).at_rest;
@@ -200,7 +200,7 @@ TEST(Moving, NeverRestsInViewAndRestsElsewhere) {
 }
 
 TEST(Moving, AFrameAllocatesNothing) {
-    Frames frames(gl::BackendKind::null, town(), 500);
+    Frames frames(gl::BackendKind::null, moving_model(), 500);
     ASSERT_NE(frames.engine, nullptr);
     for (int i = 0; i < 5; ++i) frames.frame(overlook(), 0.1 * i);
     SubmitLimits limits;
@@ -213,7 +213,7 @@ TEST(Moving, AFrameAllocatesNothing) {
             frames.engine->select_last();
         else
             frames.engine->select(frames.prepared, frames.budget_us, {}, 0);
-        limits.frame_ns = frames.at_ns += frame_ns;
+        limits.frame_ns = frames.at_ns += moving_frame_ns;
         frames.engine->submit(overlook(), limits);
         allocated += test::allocations() - before;
     }

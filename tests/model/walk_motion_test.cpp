@@ -90,7 +90,7 @@ TEST_P(WrongMotions, AreRefusedByTheirPlace) {
     EXPECT_NE(read.error().place.find(GetParam().place), std::string::npos) << read.error().text();
 }
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 INSTANTIATE_TEST_SUITE_P(
     Each, WrongMotions,
@@ -100,20 +100,20 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongMotion{"KeysThatWrap", "motions[0]", [](Model& m) { m.motions[0].first_key = 0xffffffffU; }},
                     WrongMotion{"OuterOfItself", "motions[1]", [](Model& m) { m.motions[1].outer = 1; }},
                     WrongMotion{"OuterBehind", "motions[0]", [](Model& m) { m.motions[0].outer = 1; }},
-                    WrongMotion{"Pivot", "motions[0]", [](Model& m) { m.motions[0].pivot.y = no_number; }},
-                    WrongMotion{"Period", "motions[0]", [](Model& m) { m.motions[0].period_s = no_number; }},
+                    WrongMotion{"Pivot", "motions[0]", [](Model& m) { m.motions[0].pivot.y = not_a_number; }},
+                    WrongMotion{"Period", "motions[0]", [](Model& m) { m.motions[0].period_s = not_a_number; }},
                     WrongMotion{"NoPeriod", "motions[0]", [](Model& m) { m.motions[0].period_s = 0; }},
                     WrongMotion{"OtherPeriod", "motions[0]", [](Model& m) { m.motions[0].period_s *= 1.5; }},
-                    WrongMotion{"Translation", "motion_keys[1]", [](Model& m) { m.motion_keys[1].translation.z = no_number; }},
+                    WrongMotion{"Translation", "motion_keys[1]", [](Model& m) { m.motion_keys[1].translation.z = not_a_number; }},
                     WrongMotion{"Rotation", "motion_keys[1]",
                                 [](Model& m) {
                                     m.motion_keys[1].rotation = {0, 0, 0, 2};
                                 }},
                     WrongMotion{"NoRotation", "motion_keys[0]",
-                                [](Model& m) { m.motion_keys[0].rotation[0] = static_cast<float>(no_number); }},
+                                [](Model& m) { m.motion_keys[0].rotation[0] = static_cast<float>(not_a_number); }},
                     WrongMotion{"LateStart", "motion_keys[0]", [](Model& m) { m.motion_keys[0].time_s = 1e-3; }},
                     WrongMotion{"TimeFalls", "motion_keys[1]", [](Model& m) { m.motion_keys[1].time_s = -1; }},
-                    WrongMotion{"TimeIsNone", "motion_keys[1]", [](Model& m) { m.motion_keys[1].time_s = no_number; }},
+                    WrongMotion{"TimeIsNone", "motion_keys[1]", [](Model& m) { m.motion_keys[1].time_s = not_a_number; }},
                     WrongMotion{"FormsMoveApart", "nodes[0]", [](Model& m) { m.reps[0].placement = 1; }},
                     WrongMotion{"TooDeep", "motions[",
                                 [](Model& m) {
