@@ -345,7 +345,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](AnimatedGltf& f) {
                     f.channel(1, "translation", {0, 3, 9}, {0, 0, 0, 0, 1, 0, 0, 0, 0}).end("first one");
                 }}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& one) { return std::string(one.param.name); });
 
 TEST(GltfAnimation, TheFirstOfTwoForANodeWins) {
     const Scene scene = AnimatedGltf()

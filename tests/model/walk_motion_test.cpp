@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
                                         m.motions.back().outer = static_cast<Index>(m.motions.size() - 2);
                                     }
                                 }}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& one) { return std::string(one.param.name); });
 
 TEST_F(WalkMotion, AnyByteFlippedIsAnError) {
     add_motions();
