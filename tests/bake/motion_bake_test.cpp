@@ -19,7 +19,6 @@ namespace surefoot::bake {
 namespace {
 
 using model::Index;
-using model::none;
 
 const model::Model& moving_model() {
     static const model::Model baked = [] {
@@ -33,7 +32,7 @@ const model::Model& moving_model() {
 std::vector<Index> moving_leaves(const model::Model& m) {
     std::vector<Index> leaves;
     for (Index n = 0; n < m.nodes.size(); ++n)
-        if (m.nodes[n].child_count == 0 && model::motion_of(m, m.nodes[n]) != none) leaves.push_back(n);
+        if (m.nodes[n].child_count == 0 && model::motion_of(m, m.nodes[n]) != model::none) leaves.push_back(n);
     return leaves;
 }
 
@@ -56,7 +55,7 @@ TEST(MotionBake, KeepsWhatMovesAndTheMotionsThatItHas) {
     EXPECT_EQ(m->motions.size(), 4U);
     std::map<Index, int> objects;
     for (const Index n : moving_leaves(*m)) ++objects[model::motion_of(*m, m->nodes[n])];
-    EXPECT_EQ(objects.size(), 3U) << "the arm has none itself";
+    EXPECT_EQ(objects.size(), 3U) << "the arm moves nothing by itself";
     for (const auto& [motion, count] : objects) EXPECT_EQ(count, m->motions[motion].period_s == 8 ? 3 : 1);
     EXPECT_TRUE(model::motion_finding(*m).called_for);
 }
@@ -70,7 +69,7 @@ TEST(MotionBake, BoxesHoldAtAHundredThousandRandomTimes) {
         const Index leaf = leaves[random.below(static_cast<std::uint32_t>(leaves.size()))];
         const double t = 1000 * random.unit() - 500;
         const dvec3 at = model::pose_at(m, model::motion_of(m, m.nodes[leaf]), t)(corner_at_rest(m, leaf, random));
-        for (Index n = leaf; n != none; n = m.nodes[n].parent)
+        for (Index n = leaf; n != model::none; n = m.nodes[n].parent)
             ASSERT_LE(m.nodes[n].box.distance(at), 1e-5) << "node " << n << ", time " << t;
     }
 }
@@ -92,7 +91,7 @@ TEST(MotionBake, ErrorsHoldAtRandomTimes) {
     const model::Model& m = moving_model();
     std::set<Index> nodes;
     for (const Index leaf : moving_leaves(m))
-        for (Index n = leaf; n != none; n = m.nodes[n].parent) nodes.insert(n);
+        for (Index n = leaf; n != model::none; n = m.nodes[n].parent) nodes.insert(n);
     Random random(5);
     std::size_t judged = 0;
     for (int round = 0; round < 6; ++round) {
@@ -121,7 +120,7 @@ TEST(MotionBake, FormsAboveStandAtRestAndTheirErrorSaysHowFarOffThatIs) {
         if (m.motions[model::motion_of(m, node)].period_s != 8) continue;
         EXPECT_EQ(model::motion_of(m, m.nodes[node.parent]), model::motion_of(m, node)) << "three parts turn as one";
     }
-    EXPECT_EQ(model::motion_of(m, root), none);
+    EXPECT_EQ(model::motion_of(m, root), model::none);
     for (Index r = root.first_rep; r < root.first_rep + root.rep_count; ++r)
         EXPECT_GE(static_cast<double>(m.reps[r].error_m), 0.99 * displacement_m);
 }
@@ -131,7 +130,7 @@ TEST(MotionBake, WhatStandsHasTheErrorsThatItHasAlone) {
     const auto alone = bake(small_town(), {}, {});
     ASSERT_TRUE(alone.ok());
     const model::Model& m = moving_model();
-    const Index still = model::motion_of(m, m.nodes[m.nodes[0].first_child]) == none &&
+    const Index still = model::motion_of(m, m.nodes[m.nodes[0].first_child]) == model::none &&
                                 m.nodes[m.nodes[0].first_child].triangles == alone->nodes[0].triangles
                             ? m.nodes[0].first_child
                             : m.nodes[0].first_child + 1;
@@ -183,7 +182,7 @@ TEST(MotionBake, AllThatMovesAndNothingThatStandsIsBakedToo) {
     scene.nodes.resize(1);
     const auto one = bake(scene, {}, {});
     ASSERT_TRUE(one.ok()) << one.error().text();
-    EXPECT_NE(model::motion_of(*one, one->nodes[0]), none);
+    EXPECT_NE(model::motion_of(*one, one->nodes[0]), model::none);
     EXPECT_EQ(model::MovingNodes(*one).roots(), std::vector<Index>{0});
 }
 
@@ -200,7 +199,7 @@ TEST(MotionBake, BoxesOfWhatMovesMoveAlong) {
         const Index motion = model::motion_of(*m, node);
         for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
             EXPECT_EQ(m->placements[m->reps[r].placement].motion, motion);
-            boxes += motion != none && m->reps[r].kind != model::RepKind::mesh ? 1 : 0;
+            boxes += motion != model::none && m->reps[r].kind != model::RepKind::mesh ? 1 : 0;
         }
     }
     EXPECT_GT(boxes, 0U) << "else the test shows nothing";
