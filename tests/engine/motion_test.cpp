@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -74,15 +75,17 @@ model::Model placed_at(double time_s) {
 TEST(Moving, APictureIsThatOfAStillSceneWithEverythingInItsPlace) {
     auto engine = open(gl::BackendKind::egl, moving_model());
     if (engine == nullptr) GTEST_SKIP() << "no EGL";
-    const std::vector<std::uint8_t> first = full_picture(*engine, 0);
-    for (const double t : {1.3, 4.0, 17.7, -2.5, 1e6 + 0.1}) {
-        const std::vector<std::uint8_t> shown = full_picture(*engine, t);
-        auto still = open(gl::BackendKind::egl, placed_at(t));
+    constexpr std::array times_s = {0.0, 1.3, 4.0, 17.7, -2.5, 1e6 + 0.1};
+    std::vector<std::vector<std::uint8_t>> shown;
+    for (const double t : times_s) shown.push_back(full_picture(*engine, t));
+    EXPECT_EQ(full_picture(*engine, 0), shown[0]) << "time goes back as well";
+    engine.reset();  // one context a thread
+    for (std::size_t i = 0; i < times_s.size(); ++i) {
+        auto still = open(gl::BackendKind::egl, placed_at(times_s[i]));
         ASSERT_NE(still, nullptr);
-        EXPECT_GT(measure::share_within(shown, full_picture(*still, 0), 2), 0.9999) << t;
-        EXPECT_LT(measure::share_within(shown, first, 2), 0.999) << t << ": something has moved";
+        EXPECT_GT(measure::share_within(shown[i], full_picture(*still, 0), 2), 0.9999) << times_s[i];
+        if (i > 0) EXPECT_LT(measure::share_within(shown[i], shown[0], 2), 0.999) << times_s[i] << ": something has moved";
     }
-    EXPECT_EQ(full_picture(*engine, 0), first) << "time goes back as well";
 }
 
 struct Frames {
