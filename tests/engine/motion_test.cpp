@@ -84,7 +84,8 @@ TEST(Moving, APictureIsThatOfAStillSceneWithEverythingInItsPlace) {
         auto still = open(gl::BackendKind::egl, placed_at(times_s[i]));
         ASSERT_NE(still, nullptr);
         EXPECT_GT(measure::share_within(shown[i], full_picture(*still, 0), 2), 0.9999) << times_s[i];
-        if (i > 0) EXPECT_LT(measure::share_within(shown[i], shown[0], 2), 0.999) << times_s[i] << ": something has moved";
+        if (i == 0) continue;
+        EXPECT_LT(measure::share_within(shown[i], shown[0], 2), 0.999) << times_s[i] << ": something has moved";
     }
 }
 
