@@ -39,6 +39,7 @@ public:
     [[nodiscard]] const std::vector<Index>& roots() const { return roots_; }
 
 private:
+    /// A node that moves, and its limits over all times.
     struct Slot {
         Box rest;
         Index motion = none;
