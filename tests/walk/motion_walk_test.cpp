@@ -19,7 +19,7 @@ namespace {
 struct MotionWalk : testing::Test {
     test::TemporaryFolder folder;
     /// The eye stands still before the town for as long as it takes.
-    walk::WalkRequest request(bool moves, std::uint64_t frames) const {
+    walk::WalkRequest request(bool moves, std::uint64_t count) const {
         importer::Scene scene = bake::moving_town();
         if (!moves)
             for (importer::Node& node : scene.nodes) node.motion = importer::none;
@@ -39,7 +39,7 @@ struct MotionWalk : testing::Test {
         r.given_path = path;
         r.backend = "null";
         r.clock = rt::ClockKind::virtual_time;
-        r.frames = frames;
+        r.frames = count;
         r.state_dir = folder / "";
         return r;
     }
