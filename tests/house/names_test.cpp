@@ -1,4 +1,5 @@
-// Names of registry entries stand in the registry's folder alone: what others print or ask for, they take from there.
+// Names of registry entries stand in the registry's folder alone: what others print or ask for, they take from there. Names of
+// scenes stand nowhere in what bakes, draws or walks: no choice goes by them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include "render/import/formats.hpp"
 #include "render/model/model.hpp"
 #include "render/select/registry.hpp"
+#include "tools/scenes/scenes.hpp"
 
 namespace surefoot::house {
 namespace {
@@ -140,6 +142,55 @@ TEST(Names, OfRegistryEntriesStandInTheirFolderAlone) {
         }
     }
     EXPECT_GT(files, 200U) << "the sources were not found";
+}
+
+/// The name of a scene that a literal has in it, in a path or a text too; empty for none. "room" is also a place in memory: it
+/// counts alone, and before the ending of a file.
+std::string scene_in(std::string_view literal) {
+    std::string text;
+    for (const char c : literal) text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::vector<std::string> names = scenes::scene_names();
+    for (const char* const measured : {"hospital", "keflavik", "candela", "ravenbridge", "cocoa"}) names.emplace_back(measured);
+    for (const std::string& name : names) {
+        const auto at = text.find(name);
+        if (at == std::string::npos) continue;
+        const bool file = text.size() > at + name.size() + 1 && text[at + name.size()] == '.' &&
+                          std::isalpha(static_cast<unsigned char>(text[at + name.size() + 1])) != 0;
+        if (name != "room" || text == name || file) return name;
+    }
+    return {};
+}
+
+TEST(Names, OfScenesAreNowhereInWhatBakesDrawsAndWalks) {
+    std::size_t literals = 0;
+    for (const auto* top : {"render", "tools/walk"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(tree / top)) {
+            const auto kind = entry.path().extension();
+            if (!entry.is_regular_file() || (kind != ".cpp" && kind != ".hpp")) continue;
+            std::ifstream stream(entry.path());
+            std::size_t number = 0;
+            for (std::string line; std::getline(stream, line);) {
+                ++number;
+                for (const std::string& literal : literals_in(line)) {
+                    ++literals;
+                    EXPECT_EQ(scene_in(literal), "") << entry.path() << ":" << number << " goes by a scene's name: " << literal;
+                    EXPECT_FALSE(literal.starts_with("tools/scenes/"))
+                        << entry.path() << ":" << number << " includes " << literal;
+                }
+            }
+        }
+    }
+    EXPECT_GT(literals, 1000U) << "the sources were not found";
+}
+
+TEST(Names, OfScenesAreFound) {
+    EXPECT_EQ(scene_in("forest"), "forest");
+    EXPECT_EQ(scene_in("models/Ravenbridge.walk"), "ravenbridge");
+    EXPECT_EQ(scene_in("cocoa-temple"), "cocoa");
+    EXPECT_EQ(scene_in("room"), "room");
+    EXPECT_EQ(scene_in("room.glb"), "room");
+    EXPECT_EQ(scene_in("There is room for more."), "");
+    EXPECT_EQ(scene_in("room_light"), "");
 }
 
 TEST(Names, ThatAreRepeatedAreFound) {
