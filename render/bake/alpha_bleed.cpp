@@ -2,6 +2,9 @@
 // rows and then along the columns, there and back, carry distances and colours.
 #include "render/bake/alpha_bleed.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -88,6 +91,19 @@ std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, con
         if (there[a] && material.colour[3] * static_cast<float>(a) / 255.0F < cutoff) return static_cast<std::uint8_t>(a);
     }
     return {};
+}
+
+std::vector<bool> hidden_materials(const importer::Scene& scene, std::vector<std::string>& warnings) {
+    std::vector<bool> out;
+    for (const importer::Material& material : scene.materials) {
+        out.push_back(false);
+        if (material.alpha != model::AlphaMode::mask || material.image == importer::none) continue;
+        const Alphas there = alphas_of(scene.images[material.image]);
+        const auto hidden = hidden_alpha(material, there);
+        out.back() = hidden && std::none_of(there.begin() + *hidden + 1, there.end(), [](bool is) { return is; });
+        if (out.back()) warnings.push_back(fmt::format("Material '{}': its mask hides all of its picture", material.name));
+    }
+    return out;
 }
 
 void bleed_colours(std::span<std::uint8_t> rgba, std::uint32_t width, std::uint32_t height, bool clamp, std::uint8_t hidden) {

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "render/import/scene.hpp"
 
@@ -21,6 +23,9 @@ std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, con
 inline std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const image::Image& image) {
     return hidden_alpha(material, alphas_of(image));
 }
+
+/// By material: whether its mask shows no texel of its image, so that nobody sees its triangles. A warning names each.
+std::vector<bool> hidden_materials(const importer::Scene& scene, std::vector<std::string>& warnings);
 
 /// Gives each texel with alpha <= `hidden` the colour of the nearest texel with a larger alpha. Distance: steps along rows and
 /// columns, wrapping over the borders unless `clamp`. Alphas do not change. An image without shown texels does not change.

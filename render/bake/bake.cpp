@@ -13,6 +13,7 @@
 #include <optional>
 #include <thread>
 
+#include "render/bake/alpha_bleed.hpp"
 #include "render/bake/boxes.hpp"
 #include "render/bake/ground.hpp"
 #include "render/bake/limits.hpp"
@@ -61,6 +62,7 @@ struct BakeContext {
     std::unique_ptr<LightRays> rays;                  ///< none: light is not measured
     RefinedMeshes refined;
     SceneLight light;
+    std::vector<bool> hidden;  ///< by material: its mask shows nothing
 
     ProxyInput proxy_input() const;
     void place_objects();
@@ -103,6 +105,7 @@ ProxyInput BakeContext::proxy_input() const {
     input.proxy_material = proxy_or_none;
     for (const model::Material& m : model.materials) input.two_sided.push_back(m.two_sided);
     input.cut_out = cut_out;
+    input.hidden = hidden;
     input.slack = chain_options(options, proxy_or_none).slack;
     return input;
 }
@@ -143,6 +146,7 @@ bool BakeContext::make_forms() {
     std::atomic<bool> go{true};
     ChainOptions chain = chain_options(options, proxy_or_none);
     chain.cut_out = cut_out;
+    chain.hidden = hidden;
     chain.pictures = pictures_of(model);
     chain.looks = &model;
     std::vector<std::vector<std::string>> notes(scene.meshes.size());
@@ -418,8 +422,9 @@ bool BakeContext::measure_pictures() {
 }  // namespace
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
-    BakeContext context{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    BakeContext context{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     context.cut_out = cut_out_materials(scene);
+    context.hidden = hidden_materials(scene, context.model.provenance.warnings);
     context.proxy = add_materials(scene, context.model);
     mark_vertex_colours(scene, context.model);
     if (scene.sun) context.model.sun_direction = scene.sun->towards;

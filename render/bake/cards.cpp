@@ -69,6 +69,12 @@ Cards thinnable_cards(const Geometry& g, const GeometryPart& part) {
     return cards;
 }
 
+Cards single_triangles(const GeometryPart& part) {
+    Cards cards;
+    for (auto at = part.indices.begin(); at != part.indices.end(); at += 3) cards.emplace_back(at, at + 3);
+    return cards;
+}
+
 double area_of(const Geometry& g, const std::vector<std::uint32_t>& indices) {
     double area = 0;
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {

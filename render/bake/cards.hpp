@@ -26,6 +26,9 @@ Cards cards_of(const Geometry& g, const GeometryPart& part);
 /// cards_of() if the part can be thinned out, else none.
 Cards thinnable_cards(const Geometry& g, const GeometryPart& part);
 
+/// Each triangle a card by itself. For materials that show nothing: any of them stand for all, and must not become solid.
+Cards single_triangles(const GeometryPart& part);
+
 /// Orders cards up to a sum of `max_triangles`: the middle card first, then always the farthest from all before it. Distances
 /// are divided by the square root of a card's triangles, so that many small cards replace a large one. The first few then
 /// represent all, out to the tips. Time: cards x ordered cards. Source: Gonzalez 1985, farthest-point clustering.

@@ -15,6 +15,8 @@ namespace {
 
 constexpr double largest_in_clusters = 2.5;  ///< times its size; they are seen from farther than an object's own
 
+bool is_hidden(const std::vector<bool>& hidden, model::Index material) { return material < hidden.size() && hidden[material]; }
+
 bool can_be_thinned(const Geometry& g, const GeometryPart& part, std::uint32_t largest_triangles) {
     const auto cards = thinnable_cards(g, part);
     return !cards.empty() && std::ranges::all_of(cards, [&](const auto& card) { return card.size() / 3 <= largest_triangles; });
@@ -37,7 +39,8 @@ struct Thinning {
     Thinning(const Geometry& geometry, const std::vector<GeometryPart>& parts, const CardLimits& wanted) : g(geometry) {
         limits.relative = wanted.slack;
         for (const GeometryPart& part : parts) {
-            cards.push_back({part.material, cards_of(g, part), area_of(g, part.indices)});
+            const bool any = is_hidden(wanted.hidden, part.material);
+            cards.push_back({part.material, any ? single_triangles(part) : cards_of(g, part), area_of(g, part.indices)});
             spread(g, cards.back().cards, wanted.max_triangles);
             triangles += part.indices.size() / 3;
         }
@@ -122,13 +125,13 @@ Level solid_within(const std::vector<Level>& solid, float error_m) {
 }  // namespace
 
 std::vector<GeometryPart> take_cards(Geometry& g, const std::vector<bool>& cut_out, model::Index proxy_material,
-                                     std::uint32_t largest_triangles) {
+                                     std::uint32_t largest_triangles, const std::vector<bool>& hidden) {
     std::vector<GeometryPart> parts = std::move(g.parts), cards;
     g.parts.clear();
     for (GeometryPart& part : parts) {
         if (part.material >= cut_out.size() || !cut_out[part.material])
             g.parts.push_back(std::move(part));
-        else if (can_be_thinned(g, part, largest_triangles))
+        else if (is_hidden(hidden, part.material) || can_be_thinned(g, part, largest_triangles))
             cards.push_back(std::move(part));
     }
     for (GeometryPart& part : parts)  // what was not moved

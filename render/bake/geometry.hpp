@@ -62,6 +62,7 @@ struct ChainOptions {
     std::uint32_t proxy_below = 40;   ///< triangles; coarser levels have baked colours in one part
     std::vector<Picture> pictures;    ///< by material: the texture that baked colours lose
     std::vector<bool> cut_out;        ///< by material: its alpha test cuts shapes out of triangles
+    std::vector<bool> hidden;         ///< by material: its alpha test hides all of it, so no coarse form may show it
     const model::Model* looks = nullptr;  ///< with complete materials and textures; none: no stacks of prisms
     double ratio = 0.45;  ///< of triangles, from a level to the next coarser; solids beside cards use its square root
 };

@@ -96,7 +96,8 @@ Thinned find_cards(const Geometry& g, const ChainOptions& options) {
         const double area = area_of(g, part.indices);
         all += area;
         if (part.material >= options.cut_out.size() || !options.cut_out[part.material]) continue;
-        auto found = thinnable_cards(g, part);
+        const bool hidden = part.material < options.hidden.size() && options.hidden[part.material];
+        auto found = hidden ? single_triangles(part) : thinnable_cards(g, part);
         if (found.empty()) continue;
         of_cards += area;
         const std::size_t triangles = part.indices.size() / 3;

@@ -201,7 +201,7 @@ LodChain cluster_chain(Merged& merged, const ProxyInput& input, const Clustering
     Geometry& g = merged.geometry;
     const auto all = static_cast<double>(g.triangles());
     const std::vector<GeometryPart> cards =
-        take_cards(g, input.cut_out, input.proxy_material, std::max(limits.max_triangles / 8, 2U));
+        take_cards(g, input.cut_out, input.proxy_material, std::max(limits.max_triangles / 8, 2U), input.hidden);
     if (cards.empty()) return cluster_vertices(g, merged.owners, input.two_sided, limits);
     const double share = static_cast<double>(g.triangles()) / all;
     const auto solid_of = [&](std::uint32_t triangles) { return static_cast<std::uint32_t>(share * triangles); };
@@ -215,6 +215,7 @@ LodChain cluster_chain(Merged& merged, const ProxyInput& input, const Clustering
     card.max_triangles = std::max(limits.max_triangles - std::min(limits.max_triangles, taken), 4U);
     card.min_triangles = std::max(limits.min_triangles - solid_of(limits.min_triangles), 4U);
     card.slack = limits.slack;
+    card.hidden = input.hidden;
     chain = with_cards(std::move(chain), g, cards, card);
     g.parts.insert(g.parts.end(), cards.begin(), cards.end());
     // What is solid and every material's cards have a least number of triangles each; together these may be too many.

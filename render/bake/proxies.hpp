@@ -25,6 +25,7 @@ struct ProxyInput {
     model::Index proxy_material = 0;
     std::vector<bool> two_sided;  ///< by material
     std::vector<bool> cut_out;    ///< by material: alpha-tested cards, which keep their material (cards.hpp)
+    std::vector<bool> hidden;     ///< by material: nothing of it shows, as in ChainOptions
     float slack = 0.25F;          ///< relative gap allowed between upper and lower bound
     std::uint32_t max_input =
         24000;  ///< maximum triangles merged; objects enter at coarser levels to fit, and their errors are added
