@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 #include "render/bake/bake.hpp"
 #include "render/bake/cluster.hpp"
@@ -137,6 +138,61 @@ TEST(Bake, TwoBakesOfOneSceneAreTheSameFile) {
         files.push_back(*read_file(folder / "m.walk"));
     }
     EXPECT_TRUE(files[0] == files[1]);
+}
+
+/// Rings of vertices, one above the other, with sides between them: what no other form is.
+bool is_stack_of_prisms(const model::Model& m, const model::Representation& rep) {
+    if (rep.kind != model::RepKind::mesh || rep.part_count != 1 || rep.triangles < 16 || rep.triangles > 46) return false;
+    const model::Part& part = m.parts[rep.first_part];
+    std::map<float, std::map<std::uint32_t, int>> rings;
+    for (std::uint32_t i = 0; i < part.index_count; ++i) {
+        const std::uint32_t index = m.indices[part.first_index + i];
+        ++rings[m.vertices[part.first_vertex + index].position[1]][index];
+    }
+    return (rings.size() == 3 || rings.size() == 5) && std::all_of(rings.begin(), rings.end(), [](const auto& ring) {
+               return ring.second.size() == 4 || ring.second.size() == 5;
+           });
+}
+
+/// How many forms of each method a model has.
+struct Methods {
+    int cards = 0, cluster_cards = 0, stacks = 0, pictures = 0;
+    explicit Methods(const model::Model& m) {
+        for (const model::Node& node : m.nodes) {
+            for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
+                const model::Representation& rep = m.reps[r];
+                pictures += rep.kind == model::RepKind::textured_box ? 1 : 0;
+                if (rep.kind != model::RepKind::mesh || model::is_full_detail(node, r, rep.error_m)) continue;
+                stacks += node.child_count == 0 && is_stack_of_prisms(m, rep) ? 1 : 0;
+                bool masked = false;
+                for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p)
+                    masked |= m.materials[m.parts[p].material].alpha == model::AlphaMode::mask;
+                (node.child_count > 0 ? cluster_cards : cards) += masked ? 1 : 0;
+            }
+        }
+    }
+};
+
+TEST(Bake, FilesOfCardsStacksAndPicturesAreTheSameAtAnyWorkerCount) {
+    const test::TemporaryFolder folder;
+    for (const char* name : {"garden", "forest"}) {
+        const importer::Scene scene = scene_of(name, small_scale);
+        std::vector<std::vector<std::byte>> files;
+        for (const int workers : {1, 4}) {
+            const model::Model m = bake_of(scene, workers);
+            const Methods made(m);
+            if (m.textures.empty()) {
+                EXPECT_GT(made.stacks, 0) << name;
+            } else {
+                EXPECT_GT(made.cards, 0) << name;
+                EXPECT_GT(made.cluster_cards, 0) << name;
+                EXPECT_GT(made.pictures, 0) << name;
+            }
+            ASSERT_TRUE(model::write_walk(folder / "m.walk", m).ok());
+            files.push_back(*read_file(folder / "m.walk"));
+        }
+        EXPECT_TRUE(files[0] == files[1]) << name;
+    }
 }
 
 TEST(Bake, EveryTriangleOfTheSceneIsInTheLeaves) {
