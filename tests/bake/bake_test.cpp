@@ -1,5 +1,6 @@
 // The bake: every bound holds, parents cost less than their children, the same bits at any worker count, refusals by name.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <atomic>
@@ -174,6 +175,7 @@ struct Methods {
 };
 
 TEST(Bake, FilesOfCardsStacksAndPicturesAreTheSameAtAnyWorkerCount) {
+    const tbb::global_control more_than_cores(tbb::global_control::max_allowed_parallelism, 4);
     const test::TemporaryFolder folder;
     for (const char* name : {"garden", "forest"}) {
         const importer::Scene scene = scene_of(name, small_scale);
