@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "render/image/image.hpp"
 #include "rt/base/file.hpp"
 #include "tests/text_pieces.hpp"
 #include "tests/walk/walk_fixture.hpp"
@@ -22,6 +23,100 @@ FormPicturesRequest forms_request(std::uint32_t max_nodes) {
     request.state_dir = test::Forest::get().dir;  // no table there
     request.max_nodes = max_nodes;
     return request;
+}
+
+/// The picture of a data URI; an empty one, and a failure, where it is none.
+image::Image picture_in(std::string_view uri) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::vector<std::byte> bytes;
+    std::uint32_t bits = 0, count = 0;
+    for (const char c : uri.substr(std::min(uri.find(',') + 1, uri.size()))) {
+        const auto digit = digits.find(c);
+        if (digit == std::string_view::npos) break;
+        bits = bits << 6U | static_cast<std::uint32_t>(digit);
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        bytes.push_back(static_cast<std::byte>(bits >> count & 255U));
+    }
+    auto image = image::decode_image(bytes, "data URI");
+    EXPECT_TRUE(image.ok()) << (image.ok() ? "" : image.error().text());
+    return image.ok() ? std::move(*image) : image::Image{};
+}
+
+/// More than a JPEG makes of equal colours.
+constexpr int clearly_other = 40;
+
+/// Pixels in which two pictures of one size differ clearly.
+std::size_t different_pixels(const image::Image& a, const image::Image& b) {
+    EXPECT_EQ(a.rgba.size(), b.rgba.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i + 3 < std::min(a.rgba.size(), b.rgba.size()); i += 4) {
+        int off = 0;
+        for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(a.rgba[i + k] - b.rgba[i + k]));
+        count += off > clearly_other ? 1 : 0;
+    }
+    return count;
+}
+
+/// Pixels that show something before the sky.
+std::size_t object_pixels(const image::Image& image) {
+    image::Image sky = image;
+    for (std::size_t i = 0; i < sky.rgba.size(); ++i) sky.rgba[i] = i % 4 == 3 ? 255 : image::to_byte(model::usual_sky[i % 4]);
+    return different_pixels(image, sky);
+}
+
+double psnr_of(const image::Image& a, const image::Image& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i)
+        if (i % 4 != 3) sum += (a.rgba[i] - b.rgba[i]) * (a.rgba[i] - b.rgba[i]);
+    return 10 *
+           std::log10(255.0 * 255.0 * 0.75 * static_cast<double>(std::max<std::size_t>(a.rgba.size(), 1)) / std::max(sum, 1e-9));
+}
+
+TEST(FormPictures, ShowTheObjectAndWhereACoarseFormIsOff) {
+    const auto drawn = draw_forms(forms_request(12), {});
+    ASSERT_TRUE(drawn.ok()) << drawn.error().text();
+    std::size_t coarse = 0, off = 0, alike = 0, far = 0, far_shown = 0;
+    for (const DrawnNode& node : drawn->drawn) {
+        const image::Image full = picture_in(node.full);
+        ASSERT_EQ(full.width, form_picture_px);
+        ASSERT_EQ(full.height, form_picture_px);
+        const std::size_t there = object_pixels(full);
+        EXPECT_GT(there, 400U) << node.name << " fills the picture";
+        EXPECT_LT(there, 0.9 * form_picture_px * form_picture_px) << "and leaves some sky";
+        for (const DrawnForm& form : node.forms) {
+            const image::Image close = picture_in(form.close);
+            const std::size_t shown = object_pixels(close);
+            EXPECT_GT(shown, 0U) << node.name << ", " << form.triangles << " triangles";
+            if (form.loss.coverage < 0.5F) {  // as measured at bake, from all round
+                ++alike;
+                EXPECT_GT(shown, there / 4) << node.name << ", " << form.triangles << " triangles";
+                EXPECT_LT(shown, 4 * there) << node.name << ", " << form.triangles << " triangles";
+            }
+            if (form.full_detail) {
+                EXPECT_LE(different_pixels(close, full), there / 100) << node.name;
+            } else {
+                ++coarse;
+                off += different_pixels(close, full) > there / 50 ? 1 : 0;
+                // What the page says is what its pictures show, but for the JPEG's own part.
+                if (form.close_psnr_db < 28) {
+                    EXPECT_NEAR(psnr_of(close, full), form.close_psnr_db, 1) << node.name;
+                }
+            }
+            if (form.served.empty()) continue;
+            ++far;
+            const image::Image served = picture_in(form.served), full_there = picture_in(form.full);
+            EXPECT_EQ(served.width, form.served_px);
+            EXPECT_GT(object_pixels(full_there), 0U) << node.name;
+            far_shown += object_pixels(served) > 0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(alike, 6U);
+    EXPECT_GT(coarse, 6U);
+    EXPECT_GT(off, coarse / 2) << "most coarse forms are told from full detail near by";
+    EXPECT_GT(far, 0U);
+    EXPECT_GE(10 * far_shown, 8 * far) << "a coarse fern may vanish among a few pixels";
 }
 
 TEST(FormPictures, ShowEachFormBesideFullDetail) {
