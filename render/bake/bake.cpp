@@ -33,6 +33,7 @@ namespace surefoot::bake {
 namespace {
 
 constexpr std::uint32_t min_box_triangles = 64, min_piece_box_triangles = 256, min_plain_box_triangles = 500;
+constexpr std::uint64_t min_apart = 16;  // a share of the triangles: 1/16
 constexpr std::uint32_t max_box_cell = 32, min_box_cell = 16;   // texels of a face's picture, with its rim
 constexpr std::size_t max_box_bytes = std::size_t{128} << 20U;  // of all pictures of boxes while they are judged
 /// Six faces of four bytes a texel, and mip levels.
@@ -61,6 +62,7 @@ struct BakeContext {
     std::vector<bool> cut_out;                        ///< by material
     std::unique_ptr<LightRays> rays;                  ///< none: light is not measured
     RefinedMeshes refined;
+    ClosedVertices closed;  ///< of chains that see no sky
     SceneLight light;
     std::vector<bool> hidden;  ///< by material: its mask shows nothing
 
@@ -68,6 +70,7 @@ struct BakeContext {
     void place_objects();
     void adopt_forms(std::vector<std::vector<MeshForm>> by_mesh);
     bool make_forms();
+    std::vector<SkySides> find_sides(const std::vector<Geometry>& geometries) const;
     bool make_clusters();
     bool trim_masks();
     bool shows_pictures() const;
@@ -85,16 +88,6 @@ struct BakeContext {
     void emit_cluster(model::Index node, std::uint32_t cluster, std::vector<std::pair<model::Index, std::uint32_t>>& open);
     model::Index add_name(const std::string& name);
 };
-
-Box placed_box(const Box& box, const dmat4& world) {
-    Box out;
-    for (unsigned c = 0; c < 8; ++c) {
-        const dvec3 corner((c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y,
-                           (c & 4U) != 0 ? box.max.z : box.min.z);
-        out.grow(dvec3(world * dvec4(corner, 1.0)));
-    }
-    return out;
-}
 
 ProxyInput BakeContext::proxy_input() const {
     ProxyInput input;
@@ -142,7 +135,6 @@ bool BakeContext::make_forms() {
         stretch[object.mesh] = std::max(stretch[object.mesh], largest_stretch(dmat3(object.world)));
     }
     const dvec3 extent = world.max - world.min;
-    Stage stage(progress, "levels of detail", scene.meshes.size());
     std::atomic<bool> go{true};
     ChainOptions chain = chain_options(options, proxy_or_none);
     chain.cut_out = cut_out;
@@ -150,20 +142,28 @@ bool BakeContext::make_forms() {
     chain.pictures = pictures_of(model);
     chain.looks = &model;
     std::vector<std::vector<std::string>> notes(scene.meshes.size());
+    std::vector<Geometry> geometries(scene.meshes.size());
+    for_all(scene.meshes.size(), [&](std::size_t m) {
+        if (stretch[m] > 0)
+            geometries[m] = mesh_geometry(m < refined.size() && refined[m] ? *refined[m] : scene.meshes[m], model);
+    });
+    refined.clear();
+    const std::vector<SkySides> sides = find_sides(geometries);
+    if (progress.stopped()) return false;
+    Stage stage(progress, "levels of detail", scene.meshes.size());
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
-        Geometry geometry = mesh_geometry(m < refined.size() && refined[m] ? *refined[m] : scene.meshes[m], model);
+        Geometry geometry = std::move(geometries[m]);
         const std::vector<ArtistStandIn> stand_ins =
             stand_ins_of(scene, static_cast<importer::Index>(m), model, geometry, notes[m]);
         const CutLimits limits =
             cut_limits({std::max({extent.x, extent.y, extent.z}), stretch[m], std::uint64_t{placements[m]} * geometry.triangles(),
                         has_pictures(geometry, chain), max_triangles(options), !stand_ins.empty() || options.whole_objects});
-        by_mesh[m] = bake::make_forms(std::move(geometry), limits, chain, stand_ins, &notes[m]);
+        by_mesh[m] = bake::make_forms(std::move(geometry), limits, chain, stand_ins, &notes[m], sides[m]);
         if (!stage.step()) go = false;
     });
     for (const auto& of_mesh : notes)
         model.provenance.warnings.insert(model.provenance.warnings.end(), of_mesh.begin(), of_mesh.end());
-    refined.clear();
     if (go) adopt_forms(std::move(by_mesh));
     return go;
 }
@@ -176,21 +176,29 @@ void BakeContext::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
         count[m] = static_cast<std::uint32_t>(by_mesh[m].size());
         for (MeshForm& form : by_mesh[m]) forms.push_back(std::move(form));
     }
-    std::vector<PlacedObject> placed;
-    for (const PlacedObject& object : objects) {
-        for (std::uint32_t i = 0; i < count[object.mesh]; ++i) {
-            PlacedObject one = object;
-            one.mesh = first[object.mesh] + i;
-            one.piece = count[object.mesh] > 1;
-            one.box = placed_box(forms[one.mesh].box, object.world);
-            placed.push_back(std::move(one));
-        }
-    }
-    objects = std::move(placed);
+    objects = with_forms(objects, forms, first, count);
+}
+
+/// What sees the sky, mesh by mesh; empty where light is not measured, and where objects stay whole.
+std::vector<SkySides> BakeContext::find_sides(const std::vector<Geometry>& geometries) const {
+    if (!rays || options.whole_objects) return std::vector<SkySides>(geometries.size());
+    std::vector<MeshInPlaces> meshes(geometries.size());
+    for (std::size_t m = 0; m < meshes.size(); ++m) meshes[m].geometry = &geometries[m];
+    for (const PlacedObject& object : objects) meshes[object.mesh].places.push_back(object.world);
+    return find_scene_sides(meshes, model, *rays, progress);
 }
 
 bool BakeContext::make_clusters() {
-    tree = cluster_objects(objects, model, 8);
+    std::vector<bool> in_rooms;
+    std::uint64_t triangles = 0, closed_triangles = 0;
+    for (const PlacedObject& object : objects) {
+        const MeshForm& form = forms[object.mesh];
+        in_rooms.push_back(form.closed);
+        triangles += form.triangles;
+        closed_triangles += form.closed ? form.triangles : 0;
+    }
+    if (closed_triangles * min_apart < triangles) in_rooms.clear();  // what is below a bench is no inside of a building
+    tree = cluster_objects(objects, in_rooms, model, 8);
     clusters.resize(tree.clusters.size());
     const auto n = static_cast<std::uint32_t>(objects.size());
     std::vector<std::vector<std::uint32_t>> by_height;
@@ -278,6 +286,9 @@ void BakeContext::emit_cluster(model::Index index, std::uint32_t which,
     const ClusterForm& form = clusters[which];
     model.nodes[index].box = cluster.box;
     model.nodes[index].first_rep = static_cast<model::Index>(model.reps.size());
+    const auto is_closed = [&](std::uint32_t object) { return forms[objects[object].mesh].closed; };
+    if (std::all_of(members[which].begin(), members[which].end(), is_closed))
+        closed.push_back(static_cast<std::uint32_t>(model.vertices.size()));
     emit_representations(emit_chain(form.chain, model), dmat4(1.0), model, cluster.motion);
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
     const auto first = static_cast<model::Index>(model.nodes.size());
@@ -294,7 +305,9 @@ void BakeContext::emit() {
     model.names.assign(1, '\0');
     std::vector<EmittedChain> chains(forms.size());
     for (std::size_t m = 0; m < forms.size(); ++m) {
-        if (forms[m].triangles > 0) chains[m] = emit_chain(forms[m].chain, model);
+        if (forms[m].triangles == 0) continue;
+        if (forms[m].closed) closed.push_back(static_cast<std::uint32_t>(model.vertices.size()));
+        chains[m] = emit_chain(forms[m].chain, model);
     }
     model.object_count = object_count;
     model.nodes.resize(1);
@@ -404,7 +417,7 @@ void BakeContext::prepare_light() {
 
 bool BakeContext::measure_light() {
     if (!rays) return true;
-    auto found = measure_scene_light(scene, *rays, model, progress);
+    auto found = measure_scene_light(scene, *rays, closed, model, progress);
     rays.reset();
     if (found) light = std::move(*found);
     return found.has_value();

@@ -98,4 +98,30 @@ ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t max_childr
     return std::move(grower.tree);
 }
 
+ClusterTree grow_clusters_apart(std::span<const Box> objects, const std::vector<bool>& kind, std::uint32_t max_children) {
+    const auto count = static_cast<std::uint32_t>(objects.size());
+    ClusterTree out;
+    ClusterTree::Cluster root;
+    for (const bool which : {true, false}) {
+        std::vector<std::uint32_t> of_kind;
+        std::vector<Box> boxes;
+        for (std::uint32_t i = 0; i < count; ++i)
+            if (kind[i] == which) of_kind.push_back(i), boxes.push_back(objects[i]);
+        if (of_kind.empty()) continue;
+        if (of_kind.size() == count) return grow_clusters(objects, max_children);
+        const auto before = static_cast<std::uint32_t>(out.clusters.size()), size = static_cast<std::uint32_t>(of_kind.size());
+        const auto renamed = [&](std::uint32_t e) { return e < size ? of_kind[e] : count + before + (e - size); };
+        ClusterTree tree = grow_clusters(boxes, max_children);
+        for (ClusterTree::Cluster& cluster : tree.clusters) {
+            for (std::uint32_t& child : cluster.children) child = renamed(child);
+            out.clusters.push_back(std::move(cluster));
+        }
+        root.children.push_back(renamed(tree.root));
+        for (const Box& box : boxes) root.box.grow(box);
+    }
+    out.clusters.push_back(std::move(root));
+    out.root = count + static_cast<std::uint32_t>(out.clusters.size()) - 1;
+    return out;
+}
+
 }  // namespace surefoot::bake

@@ -26,5 +26,8 @@ struct ClusterTree {
 /// one alone does not. An entity fits if its centre is inside and its size is at most the cell's. No cluster has more than
 /// `max_children` children: larger groups are first split at medians.
 ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t max_children);
+/// The same, with two kinds apart: a tree each, and a root above both if there are both. So a view of one kind opens none of the
+/// other.
+ClusterTree grow_clusters_apart(std::span<const Box> objects, const std::vector<bool>& kind, std::uint32_t max_children);
 
 }  // namespace surefoot::bake

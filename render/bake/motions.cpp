@@ -70,6 +70,13 @@ struct Members {
     }
 };
 
+ClusterTree clusters_of_still(const Members& still, const std::vector<bool>& in_rooms, std::uint32_t max_children) {
+    if (in_rooms.empty()) return grow_clusters(still.boxes, max_children);
+    std::vector<bool> kind;
+    for (const std::uint32_t object : still.objects) kind.push_back(in_rooms[object]);
+    return grow_clusters_apart(still.boxes, kind, max_children);
+}
+
 void add_box_triangles(const Box& box, std::vector<model::GroundTriangle>& to) {
     const auto corner = [&](unsigned c) {
         return dvec3((c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y,
@@ -124,12 +131,13 @@ void adopt_motions(const importer::Scene& scene, std::vector<PlacedObject>& obje
         if (object.motion != model::none) object.motion = renamed[object.motion];
 }
 
-ClusterTree cluster_objects(std::span<const PlacedObject> objects, const model::Model& model, std::uint32_t max_children) {
+ClusterTree cluster_objects(std::span<const PlacedObject> objects, const std::vector<bool>& in_rooms, const model::Model& model,
+                            std::uint32_t max_children) {
     Members still, moving;
     std::map<Index, Members> by_motion;
     for (std::uint32_t i = 0; i < objects.size(); ++i)
         (objects[i].motion == model::none ? still : by_motion[objects[i].motion]).add(i, objects[i].box);
-    if (by_motion.empty()) return grow_clusters(still.boxes, max_children);
+    if (by_motion.empty()) return clusters_of_still(still, in_rooms, max_children);
     TreeJoiner joiner(objects.size());
     std::map<std::uint32_t, double> displacements_m;
     for (const auto& [motion, members] : by_motion) {
@@ -140,7 +148,7 @@ ClusterTree cluster_objects(std::span<const PlacedObject> objects, const model::
     }
     const std::uint32_t movers = joiner.add(grow_clusters(moving.boxes, max_children), moving.objects, model::none);
     if (still.objects.empty()) return joiner.take(movers, displacements_m);
-    const std::uint32_t rest = joiner.add(grow_clusters(still.boxes, max_children), still.objects, model::none);
+    const std::uint32_t rest = joiner.add(clusters_of_still(still, in_rooms, max_children), still.objects, model::none);
     still.box.grow(moving.box);
     return joiner.take(joiner.join(rest, movers, still.box), displacements_m);
 }

@@ -17,7 +17,9 @@ void adopt_motions(const importer::Scene& scene, std::vector<PlacedObject>& obje
 /// Still objects alone have the clusters of grow_clusters(). What moves stands beside them, in clusters of its own. Objects of
 /// one motion come together below one entity, which moves with it. Clusters above these stand still: their forms show what moves
 /// at its rest, and ClusterTree::Cluster::displacement_m is how far off that may be.
-ClusterTree cluster_objects(std::span<const PlacedObject> objects, const model::Model& model, std::uint32_t max_children);
+/// in_rooms: by object, as grow_clusters_apart() has it for what stands still; empty: all together.
+ClusterTree cluster_objects(std::span<const PlacedObject> objects, const std::vector<bool>& in_rooms, const model::Model& model,
+                            std::uint32_t max_children);
 
 /// Adds a displacement to the errors of a cluster's levels. They stay apart.
 void add_displacement(LodChain& chain, double displacement_m);

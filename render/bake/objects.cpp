@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -104,13 +106,20 @@ bool is_cut(std::span<const Loose> triangles, const Geometry& whole, bool few, c
            (few && triangles.size() >= 2 * limits.min_hidden && hides_itself(size, area));
 }
 
-Geometry gather(const Geometry& whole, std::span<const Loose> triangles) {
-    std::vector<std::uint32_t> used;  // ascending; a piece's place in it is its new number
+/// Some triangles of a geometry.
+struct CutPiece {
+    Geometry geometry;
+    std::vector<std::uint32_t> used;  ///< vertices of the whole, ascending
+};
+
+CutPiece gather(const Geometry& whole, std::span<const Loose> triangles) {
+    CutPiece out;
+    std::vector<std::uint32_t>& used = out.used;  // a piece's place in it is its new number
     used.reserve(3 * triangles.size());
     for (const Loose& t : triangles) used.insert(used.end(), t.corner, t.corner + 3);
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
-    Geometry piece;
+    Geometry& piece = out.geometry;
     piece.centre = whole.centre;
     for (const std::uint32_t vertex : used) {
         piece.vertices.push_back(whole.vertices[vertex]);
@@ -128,10 +137,10 @@ Geometry gather(const Geometry& whole, std::span<const Loose> triangles) {
         if (!part.indices.empty()) piece.parts.push_back(std::move(part));
     }
     optimise(piece);
-    return piece;
+    return out;
 }
 
-void cut_range(const Geometry& whole, std::span<Loose> triangles, bool few, const CutLimits& limits, std::vector<Geometry>& out) {
+void cut_range(const Geometry& whole, std::span<Loose> triangles, bool few, const CutLimits& limits, std::vector<CutPiece>& out) {
     dvec3 size;
     if (!is_cut(triangles, whole, few, limits, size)) {
         out.push_back(gather(whole, triangles));
@@ -159,6 +168,7 @@ CutLimits cut_limits(const MeshInScene& mesh) {
     constexpr std::uint64_t max_fine_triangles = 1U << 17U;  // about 2000 pieces
     CutLimits limits;
     limits.max_triangles = mesh.max_triangles;
+    limits.stretch = mesh.stretch;
     const bool fine = mesh.textured && mesh.placed_triangles <= max_fine_triangles;
     if (mesh.has_stand_ins) return limits;
     limits.longest_m = mesh.scene_m / (fine ? parts_if_fine : parts_of_scene) / mesh.stretch;
@@ -166,7 +176,9 @@ CutLimits cut_limits(const MeshInScene& mesh) {
     return limits;
 }
 
-std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits) {
+namespace {
+
+std::vector<Loose> loose_triangles(const Geometry& whole) {
     std::vector<Loose> triangles;
     for (std::uint32_t p = 0; p < whole.parts.size(); ++p) {
         const auto& indices = whole.parts[p].indices;
@@ -179,11 +191,56 @@ std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits) {
             triangles.push_back(t);
         }
     }
+    return triangles;
+}
+
+/// Whether triangles that see no sky are worth pieces of their own: the walls of a room are, the underside of a bench is not.
+bool are_walls_of_a_room(std::span<const Loose> closed, const SkySides& sides, double stretch) {
+    constexpr std::size_t min_triangles = 16;
+    constexpr double min_area_m2 = 4;
+    double area_m2 = 0;
+    std::size_t roomy = 0;
+    for (const Loose& t : closed) {
+        area_m2 += static_cast<double>(glm::length(t.area)) * stretch * stretch;
+        roomy += std::any_of(t.corner, t.corner + 3, [&](std::uint32_t v) { return sides.roomy[v] != 0; }) ? 1 : 0;
+    }
+    return (closed.size() >= min_triangles || area_m2 >= min_area_m2) && 2 * roomy > closed.size();
+}
+
+/// Puts triangles that see no sky anywhere first, if they become pieces of their own. Returns their number.
+std::size_t part_by_sky(std::vector<Loose>& triangles, const SkySides& sides, double stretch) {
+    if (sides.empty()) return 0;
+    std::vector<Loose> parted;
+    const auto open = [&](const Loose& t) {
+        return std::any_of(t.corner, t.corner + 3, [&](std::uint32_t v) { return sides.is_open(v); });
+    };
+    std::copy_if(triangles.begin(), triangles.end(), std::back_inserter(parted), [&](const Loose& t) { return !open(t); });
+    const std::size_t closed = parted.size();
+    if (closed == 0 || closed == triangles.size() || !are_walls_of_a_room(parted, sides, stretch)) return 0;
+    std::copy_if(triangles.begin(), triangles.end(), std::back_inserter(parted), open);
+    triangles = std::move(parted);
+    return closed;
+}
+
+/// Empty if the whole stays one.
+std::vector<CutPiece> cut_by_sky(const Geometry& whole, const CutLimits& limits, const SkySides& sides) {
+    std::vector<Loose> triangles = loose_triangles(whole);
     const bool few = triangles.size() < limits.max_hidden;
-    std::vector<Geometry> pieces;
+    std::vector<CutPiece> pieces;
+    const std::size_t closed = part_by_sky(triangles, sides, limits.stretch);
+    const std::span<Loose> all(triangles);
     dvec3 size;
-    if (is_cut(triangles, whole, few, limits, size)) cut_range(whole, triangles, few, limits, pieces);
+    if (closed > 0) cut_range(whole, all.first(closed), few, limits, pieces);
+    if (closed > 0 || is_cut(all, whole, few, limits, size)) cut_range(whole, all.subspan(closed), few, limits, pieces);
     return pieces;
+}
+
+}  // namespace
+
+std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits) {
+    std::vector<Geometry> out;
+    for (CutPiece& piece : cut_by_sky(whole, limits, {})) out.push_back(std::move(piece.geometry));
+    return out;
 }
 
 namespace {
@@ -199,17 +256,47 @@ MeshForm make_form(Geometry geometry, const ChainOptions& options) {
     return form;
 }
 
+/// Adds the form, or two: one that serves the places where no vertex sees sky, and one for the others.
+void add_form(MeshForm form, const std::vector<std::uint32_t>& used, const SkySides& sides, std::vector<MeshForm>& out) {
+    std::vector<bool> closed;
+    for (std::size_t p = 0; p < sides.places; ++p)
+        closed.push_back(std::none_of(used.begin(), used.end(), [&](std::uint32_t v) { return sides.is_open(p, v); }));
+    const auto count = static_cast<std::size_t>(std::count(closed.begin(), closed.end(), true));
+    form.closed = count > 0 && count == closed.size();
+    if (count == 0 || form.closed) {
+        out.push_back(std::move(form));
+        return;
+    }
+    MeshForm in_rooms = form;
+    in_rooms.closed = true;
+    in_rooms.serves = closed;
+    closed.flip();
+    form.serves = std::move(closed);
+    out.push_back(std::move(in_rooms));
+    out.push_back(std::move(form));
+}
+
+std::vector<std::uint32_t> all_vertices(const Geometry& geometry) {
+    std::vector<std::uint32_t> out(geometry.vertices.size());
+    std::iota(out.begin(), out.end(), 0U);
+    return out;
+}
+
 }  // namespace
 
 std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options,
-                                 std::span<const ArtistStandIn> stand_ins, std::vector<std::string>* notes) {
-    std::vector<Geometry> pieces = cut(geometry, limits);
+                                 std::span<const ArtistStandIn> stand_ins, std::vector<std::string>* notes,
+                                 const SkySides& sides) {
+    const SkySides unknown;
+    std::vector<CutPiece> pieces = cut_by_sky(geometry, limits, stand_ins.empty() ? sides : unknown);
     std::vector<MeshForm> forms;
     std::vector<std::string> unheard;
     std::vector<std::string>& lines = notes != nullptr ? *notes : unheard;
     if (pieces.empty()) {
-        forms.push_back(make_form(std::move(geometry), options));
-        if (!stand_ins.empty()) add_stand_ins(forms.back().chain, stand_ins, options.slack, lines);
+        const std::vector<std::uint32_t> used = all_vertices(geometry);
+        MeshForm form = make_form(std::move(geometry), options);
+        if (!stand_ins.empty()) add_stand_ins(form.chain, stand_ins, options.slack, lines);
+        add_form(std::move(form), used, sides, forms);
         return forms;
     }
     for (const ArtistStandIn& one : stand_ins)
@@ -217,8 +304,36 @@ std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, con
                                     geometry.triangles(), pieces.size()));
     ChainOptions of_piece = options;
     of_piece.is_piece = true;
-    for (Geometry& piece : pieces) forms.push_back(make_form(std::move(piece), of_piece));
+    for (CutPiece& piece : pieces) add_form(make_form(std::move(piece.geometry), of_piece), piece.used, sides, forms);
     return forms;
+}
+
+Box placed_box(const Box& box, const dmat4& world) {
+    Box out;
+    for (unsigned c = 0; c < 8; ++c) {
+        const dvec3 corner((c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y,
+                           (c & 4U) != 0 ? box.max.z : box.min.z);
+        out.grow(dvec3(world * dvec4(corner, 1.0)));
+    }
+    return out;
+}
+
+std::vector<PlacedObject> with_forms(const std::vector<PlacedObject>& objects, const std::vector<MeshForm>& forms,
+                                     std::span<const std::uint32_t> first, std::span<const std::uint32_t> count) {
+    std::vector<std::size_t> places(first.size(), 0);
+    std::vector<PlacedObject> placed;
+    for (const PlacedObject& object : objects) {
+        const std::size_t place = places[object.mesh]++, from = placed.size();
+        for (std::uint32_t f = first[object.mesh]; f < first[object.mesh] + count[object.mesh]; ++f) {
+            if (!forms[f].serves.empty() && !forms[f].serves[place]) continue;
+            PlacedObject one = object;
+            one.mesh = f;
+            one.box = placed_box(forms[f].box, object.world);
+            placed.push_back(std::move(one));
+        }
+        for (std::size_t i = from; i < placed.size(); ++i) placed[i].piece = placed.size() - from > 1;
+    }
+    return placed;
 }
 
 }  // namespace surefoot::bake

@@ -8,6 +8,7 @@
 
 #include "render/bake/bake.hpp"
 #include "render/bake/geometry.hpp"
+#include "render/bake/sky_sides.hpp"
 #include "render/bake/stand_ins.hpp"
 
 namespace surefoot::bake {
@@ -16,7 +17,11 @@ namespace surefoot::bake {
 struct MeshForm {
     LodChain chain;
     std::uint64_t triangles = 0;
-    Box box;  ///< in the mesh's frame
+    Box box;              ///< in the mesh's frame
+    bool closed = false;  ///< sees no sky in any place that it serves
+    /// By place of the mesh: whether this form stands there. Empty: in all. Where only some places are closed, two forms share
+    /// them.
+    std::vector<bool> serves;
 };
 
 /// One placement of a mesh, or of one piece of it.
@@ -41,6 +46,7 @@ struct CutLimits {
     /// lie behind its own front, and an extra layer costs more than extra draws.
     std::uint32_t min_hidden = 32;
     std::uint32_t max_hidden = 4096;  ///< triangles that count as few
+    double stretch = 1;               ///< largest_stretch of the mesh's placements
 };
 
 /// Largest factor by which `linear` stretches a length; errors grow by it. An upper bound, within 1e-8.
@@ -65,8 +71,15 @@ CutLimits cut_limits(const MeshInScene& mesh);
 /// Pieces within the limits, cut at medians of the triangle centres. Empty if the whole is within the limits.
 std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits);
 /// One form, or one a piece if the geometry exceeds the limits. Pieces meet in full detail, and in
-/// coarser levels as long as possible. `notes`: why stand-ins are left out, one line each.
+/// coarser levels as long as possible. `notes`: why stand-ins are left out, one line each. With `sides`, triangles that see no
+/// sky anywhere are pieces apart from the others, if they are walls of a room; and forms are closed or not in each place.
 std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options,
-                                 std::span<const ArtistStandIn> stand_ins = {}, std::vector<std::string>* notes = nullptr);
+                                 std::span<const ArtistStandIn> stand_ins = {}, std::vector<std::string>* notes = nullptr,
+                                 const SkySides& sides = {});
+/// Every object with the forms that serve its place; of several, each is a piece. world boxes included.
+std::vector<PlacedObject> with_forms(const std::vector<PlacedObject>& objects, const std::vector<MeshForm>& forms,
+                                     std::span<const std::uint32_t> first, std::span<const std::uint32_t> count);
+/// A box round the placed corners of `box`.
+Box placed_box(const Box& box, const dmat4& world);
 
 }  // namespace surefoot::bake

@@ -2,52 +2,28 @@
 #include "render/bake/openness.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <vector>
 
 #include "render/bake/lit_vertices.hpp"
+#include "render/bake/sky_rays.hpp"
 
 namespace surefoot::bake {
 
 namespace {
 
-constexpr std::size_t rays = 24;
-constexpr double room_m = 3;                // what is nearer shades
-constexpr std::uint8_t within_share = 230;  // of a room that is hidden: the mean ray is 0.3 m long
-constexpr std::size_t min_rising = 6;       // rays that tell of the sky: of a wall, half of them
-constexpr double min_up = 0.1;              // rays to the sky rise: what lies below the horizon is ground
-
-/// Spread evenly over a hemisphere about +Z, by the cosine.
-std::array<dvec3, rays> cosine_directions() {
-    constexpr double turn = std::numbers::pi * (3 - 2.2360679774997896);  // the golden angle
-    std::array<dvec3, rays> out;
-    for (std::size_t i = 0; i < rays; ++i) {
-        const double squared = (static_cast<double>(i) + 0.5) / rays, radius = std::sqrt(squared);
-        const double angle = turn * static_cast<double>(i);
-        out[i] = {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1 - squared)};
-    }
-    return out;
-}
-
-/// What a side of a surface sees: shares of the sky, and of its room, summed over places.
-struct Seen {
-    double sky = 0, room = 0;
-};
-
 class OpennessMaker {
 public:
-    OpennessMaker(model::Model& model, const RayTree& opaque, std::vector<VertexRange> ranges)
+    OpennessMaker(model::Model& model, const RayTree& opaque, std::vector<VertexRange> ranges, const ClosedVertices& closed)
         : model_(model),
-          opaque_(opaque),
+          rays_(opaque, model.nodes.empty() ? 0 : 2 * model.nodes[0].box.diagonal()),
           ranges_(std::move(ranges)),
-          starts_(ranges_.size()),
-          directions_(cosine_directions()),
-          far_m_(model.nodes.empty() ? 0 : 2 * model.nodes[0].box.diagonal()) {}
+          starts_(ranges_.size()) {
+        for (const VertexRange& range : ranges_)
+            known_closed_.push_back(std::binary_search(closed.begin(), closed.end(), range.first));
+    }
 
     void find_starts(std::size_t r) { starts_[r] = ray_starts(model_, ranges_[r]); }
     /// After find_starts() of its range.
@@ -60,19 +36,14 @@ public:
     void change_materials(Openness& found);
 
 private:
-    static std::uint8_t hidden_byte(double seen) {
-        return static_cast<std::uint8_t>(std::lround(255 * std::clamp(1 - seen, 0.0, 1.0)));
-    }
     [[nodiscard]] bool is_closed(const model::Part& part) const;
     [[nodiscard]] std::vector<bool> closed_parts() const;
-    void add_seen(const dvec3& at, const dvec3& normal, Seen& seen) const;
 
     model::Model& model_;
-    const RayTree& opaque_;
+    SkyRays rays_;
     std::vector<VertexRange> ranges_;
+    std::vector<bool> known_closed_;  ///< by range: it sees no sky, whatever rays from its coarse forms find
     std::vector<std::vector<RayStart>> starts_;
-    std::array<dvec3, rays> directions_;
-    double far_m_;
 };
 
 void OpennessMaker::measure(const VertexTask& task) {
@@ -80,45 +51,27 @@ void OpennessMaker::measure(const VertexTask& task) {
     for (std::uint32_t v = task.from; v < task.to; ++v) {
         const RayStart& start = starts_[task.range][v];
         if (!start.used) continue;
-        Seen front, back;
+        SideSees front, back;
+        const bool closed = known_closed_[task.range];
+        const auto look_from = [&](const PlacedStart& from, const dvec3& normal, SideSees& seen) {
+            closed ? rays_.add_room(from.at, normal, seen) : rays_.add_seen(from.at, normal, seen);
+        };
         double places = 0;
         for (const model::Index p : range.placements) {
             const std::optional<PlacedStart> placed = placed_start(start, model_.placements[p]);
             if (!placed) continue;  // nothing is known, and nothing is hidden
-            add_seen(placed->at, placed->normal, front);
-            if (range.two_sided) add_seen(placed->at, -placed->normal, back);
+            look_from(*placed, placed->normal, front);
+            if (range.two_sided) look_from(*placed, -placed->normal, back);
             ++places;
         }
         if (!(places > 0)) continue;
         if (!range.two_sided) back = front;
         std::uint8_t* hidden = model_.vertices[range.first + v].hidden;
-        hidden[0] = hidden_byte(front.sky / places);
-        hidden[1] = hidden_byte(back.sky / places);
-        hidden[2] = hidden_byte(front.room / places);
-        hidden[3] = hidden_byte(back.room / places);
+        hidden[0] = SkyRays::hidden_byte(front.sky / places);
+        hidden[1] = SkyRays::hidden_byte(back.sky / places);
+        hidden[2] = SkyRays::hidden_byte(front.room / places);
+        hidden[3] = SkyRays::hidden_byte(back.room / places);
     }
-}
-
-void OpennessMaker::add_seen(const dvec3& at, const dvec3& normal, Seen& seen) const {
-    const dvec3 other = std::abs(normal.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
-    const dvec3 x = glm::normalize(glm::cross(other, normal)), y = glm::cross(normal, x);
-    const dvec3 from = at + ray_lift_m * normal;
-    std::array<dvec3, rays> ways;
-    std::transform(directions_.begin(), directions_.end(), ways.begin(),
-                   [&](const dvec3& d) { return d.x * x + d.y * y + d.z * normal; });
-    const auto rises = [](const dvec3& way) { return way.y >= min_up; };
-    const auto rising = static_cast<std::size_t>(std::count_if(ways.begin(), ways.end(), rises));
-    const bool looks_up = rising >= min_rising;
-    std::size_t open = 0;
-    for (const dvec3& way : ways) {
-        const double near_m = opaque_.nearest_hit_m({from, way, room_m});
-        seen.room += std::min(near_m, room_m) / room_m / rays;
-        const bool up = rises(way);
-        if (up ? near_m < room_m : looks_up) continue;
-        const dvec3 to_sky = up ? way : glm::normalize(dvec3(way.x, min_up, way.z));
-        if (!opaque_.is_blocked({from, to_sky, far_m_})) ++open;
-    }
-    seen.sky += static_cast<double>(open) / static_cast<double>(looks_up ? rising : rays);
 }
 
 std::vector<std::uint8_t> OpennessMaker::fill_unknown() {
@@ -166,8 +119,9 @@ bool OpennessMaker::is_closed(const model::Part& part) const {
 /// By part. All parts of a chain with one material are closed, or none: what coincides is told apart by materials.
 std::vector<bool> OpennessMaker::closed_parts() const {
     std::vector<bool> closed(model_.parts.size(), false);
-    for (const VertexRange& range : ranges_) {
-        if (!range.all_places) continue;
+    for (std::size_t r = 0; r < ranges_.size(); ++r) {
+        const VertexRange& range = ranges_[r];
+        if (!range.all_places && !known_closed_[r]) continue;
         std::map<model::Index, bool> by_material;
         for (const model::Index p : range.parts) {
             bool& all = by_material.try_emplace(model_.parts[p].material, true).first->second;
@@ -215,12 +169,13 @@ void OpennessMaker::change_materials(Openness& found) {
 
 std::size_t openness_steps(const model::Model& model) { return vertex_tasks(lit_ranges(model, model::effect_sun)).size(); }
 
-Openness measure_openness(model::Model& model, const RayTree& opaque, const ForAll& for_all, const std::function<bool()>& step) {
+Openness measure_openness(model::Model& model, const RayTree& opaque, const ClosedVertices& closed, const ForAll& for_all,
+                          const std::function<bool()>& step) {
     Openness found;
     std::vector<VertexRange> ranges = lit_ranges(model, model::effect_sun);
     const std::vector<VertexTask> tasks = vertex_tasks(ranges);
     const std::size_t count = ranges.size();
-    OpennessMaker maker(model, opaque, std::move(ranges));
+    OpennessMaker maker(model, opaque, std::move(ranges), closed);
     for_all(count, [&](std::size_t r) { maker.find_starts(r); });
     std::atomic<bool> go{true};
     for_all(tasks.size(), [&](std::size_t t) {

@@ -24,11 +24,16 @@ struct Openness {
     std::vector<std::pair<model::Index, model::Index>> copies;
 };
 
+/// The first vertices of chains that see no sky in any of their places (sky_sides.hpp), ascending.
+using ClosedVertices = std::vector<std::uint32_t>;
+
 /// Fills Vertex::hidden of all lit vertices and gives their materials effect_openness, unless nothing is hidden. Parts that see
 /// no sky get a copy of their material without the sun. A vertex that stands in more than four places holds the mean of four, and
-/// keeps the sun. for_all may run on many threads; `step` is called on any of them, openness_steps() times. If it returns false,
-/// nothing is measured, and of the model only Vertex::hidden has changed. The same bytes at any number of threads.
-Openness measure_openness(model::Model& model, const RayTree& opaque, const ForAll& for_all, const std::function<bool()>& step);
+/// keeps the sun unless it is known to be closed. Coarse forms of closed chains see no sky either. for_all may run on many
+/// threads; `step` is called on any of them, openness_steps() times. If it returns false, nothing is measured, and of the model
+/// only Vertex::hidden has changed. The same bytes at any number of threads.
+Openness measure_openness(model::Model& model, const RayTree& opaque, const ClosedVertices& closed, const ForAll& for_all,
+                          const std::function<bool()>& step);
 /// How often it calls `step`.
 std::size_t openness_steps(const model::Model& model);
 

@@ -65,12 +65,18 @@ RefinedMeshes refine_scene(const importer::Scene& scene, const model::Model& mod
     return refined;
 }
 
-std::optional<SceneLight> measure_scene_light(const importer::Scene& scene, const LightRays& rays, model::Model& model,
-                                              const Progress& progress) {
+std::vector<SkySides> find_scene_sides(std::span<const MeshInPlaces> meshes, const model::Model& model, const LightRays& rays,
+                                       const Progress& progress) {
+    Stage stage(progress, "sky", sky_steps(meshes));
+    return find_sky_sides(meshes, model.materials, rays.opaque, on_all_cores, [&] { return stage.step(); });
+}
+
+std::optional<SceneLight> measure_scene_light(const importer::Scene& scene, const LightRays& rays, const ClosedVertices& closed,
+                                              model::Model& model, const Progress& progress) {
     SceneLight found;
     {
         Stage stage(progress, "light", openness_steps(model));
-        found.openness = measure_openness(model, rays.opaque, on_all_cores, [&] { return stage.step(); });
+        found.openness = measure_openness(model, rays.opaque, closed, on_all_cores, [&] { return stage.step(); });
     }
     if (progress.stopped()) return {};
     const std::vector<vec3> emission = emission_of(scene, model, found.openness);

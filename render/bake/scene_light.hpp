@@ -3,11 +3,13 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/bake/baked_light.hpp"
 #include "render/bake/openness.hpp"
 #include "render/bake/refine.hpp"
+#include "render/bake/sky_sides.hpp"
 #include "render/import/scene.hpp"
 #include "render/model/model.hpp"
 #include "rt/base/progress.hpp"
@@ -37,9 +39,13 @@ std::unique_ptr<LightRays> make_light_rays(const importer::Scene& scene, const P
 /// Meshes whose large triangles are cut for the light of the model's sun and of the scene's lamps. On the calling arena.
 RefinedMeshes refine_scene(const importer::Scene& scene, const model::Model& model, const LightRays& rays,
                            const Progress& progress);
-/// Measures it on all cores of the calling arena. Before boxes are captured, since their pictures hold light. None: stopped.
-std::optional<SceneLight> measure_scene_light(const importer::Scene& scene, const LightRays& rays, model::Model& model,
-                                              const Progress& progress);
+/// What sees the sky, mesh by mesh, on all cores of the calling arena. Where the user stops it, what it returns is of no use.
+std::vector<SkySides> find_scene_sides(std::span<const MeshInPlaces> meshes, const model::Model& model, const LightRays& rays,
+                                       const Progress& progress);
+/// Measures it on all cores of the calling arena. closed: as measure_openness() has it. Before boxes are captured, since their
+/// pictures hold light. None: stopped.
+std::optional<SceneLight> measure_scene_light(const importer::Scene& scene, const LightRays& rays, const ClosedVertices& closed,
+                                              model::Model& model, const Progress& progress);
 /// Vertices that came later, of boxes, see all of the sun and no lamp.
 void fill_scene_light(model::Model& model);
 

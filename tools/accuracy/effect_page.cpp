@@ -125,6 +125,28 @@ std::string called_for(const EffectReport& r) {
            absent + "</table></div>\n";
 }
 
+std::string region_tables(const EffectReport& r) {
+    std::string out =
+        "<h2>By region</h2>\n<p class=\"sub\">The largest regions of the hierarchy hold each object once. What <b>coarse "
+        "forms</b> "
+        "alone need is not needed by full detail.</p>\n<div class=\"card scroll\"><table>\n<tr>"
+        "<th style=\"text-align:left\">region</th><th>triangles</th><th style=\"text-align:left\">called for</th>"
+        "<th style=\"text-align:left\">why</th></tr>\n";
+    for (const EffectRegion& region : r.regions)
+        out += fmt::format("<tr>{0}node {1}: {2}</td><td>{3}</td>{0}{4}</td>{0}{5}</td></tr>\n", words, region.node,
+                           report::escaped(region.name), report::grouped(static_cast<double>(region.triangles)),
+                           report::escaped(effects_in_words(region)), report::escaped(reasons_in_words(region)));
+    out +=
+        "</table></div>\n<h2>Along the path</h2>\n<div class=\"card scroll\"><table>\n<tr><th>effect</th><th>frames</th>"
+        "<th>items</th><th style=\"text-align:left\">why</th></tr>\n";
+    for (const EffectWorth& e : r.effects)
+        if (e.called_for)
+            out += fmt::format("<tr><td>{}</td><td>{} of {}</td><td>{}</td>{}{}</td></tr>\n", report::escaped(e.name),
+                               e.walked_frames, r.use_frames, report::grouped(static_cast<double>(e.walked_items)), words,
+                               report::escaped(e.along_path));
+    return out + "</table></div>\n";
+}
+
 std::string body_of(const EffectReport& r) {
     std::string out = "<header>\n<p class=\"brand\"><b>Surefoot</b> effects</p>\n<h1>What each effect costs and shows</h1>\n";
     out += fmt::format(
@@ -133,7 +155,7 @@ std::string body_of(const EffectReport& r) {
         report::escaped(std::filesystem::path(r.path).filename().string()), r.poses, r.width, r.height,
         report::escaped(r.renderer), r.hour < 0 ? "" : fmt::format(", in the light of {:.4g} h", r.hour));
     if (!r.uncalibrated.empty()) out += fmt::format("<p class=\"sub\">{}</p>\n", report::escaped(r.uncalibrated));
-    out += called_for(r) + three_ways(r.ways);
+    out += called_for(r) + region_tables(r) + three_ways(r.ways);
     out +=
         "<h2>Time and pictures</h2>\n<p class=\"sub\">Each effect is switched off alone, in turns with the "
         "whole picture. Times are means over the places of a frame in full detail. <b>PSNR</b> and <b>FLIP</b> say how far the "
@@ -181,6 +203,18 @@ EffectJson json_of(const ThreeWays& w) {
             {"all_on_effects", spread}};
 }
 
+EffectJson json_of(const std::vector<EffectRegion>& regions) {
+    EffectJson out = EffectJson::array();
+    for (const EffectRegion& region : regions)
+        out.push_back({{"node", region.node},
+                       {"name", region.name},
+                       {"leaves", region.leaves},
+                       {"triangles", region.triangles},
+                       {"effects", effects_in_words(region)},
+                       {"why", reasons_in_words(region)}});
+    return out;
+}
+
 EffectJson json_of(const std::vector<Holder>& where) {
     EffectJson out = EffectJson::array();
     for (const Holder& h : where) out.push_back({{"name", h.name}, {"objects", h.objects}, {"triangles_share", h.share}});
@@ -203,6 +237,9 @@ std::string effects_json(const EffectReport& r) {
                            {"triangles_share", e.triangles_share},
                            {"walked_frames_share", e.walked_frames_share},
                            {"walked_triangles_share", e.walked_triangles_share},
+                           {"walked_frames", e.walked_frames},
+                           {"walked_items", e.walked_items},
+                           {"along_path", e.along_path},
                            {"where", json_of(e.where)},
                            {"worth", e.shown_at > 0 ? json_of(e.worth) : EffectJson(nullptr)}});
     const EffectJson json = {{"model", r.model},           {"path", r.path},
@@ -210,8 +247,8 @@ std::string effects_json(const EffectReport& r) {
                              {"width", r.width},           {"height", r.height},
                              {"poses", r.poses},           {"hour", r.hour < 0 ? EffectJson(nullptr) : EffectJson(r.hour)},
                              {"use_frames", r.use_frames}, {"walked_rate_hz", walked_rate_hz},
-                             {"effects", effects},         {"bare", json_of(r.bare)},
-                             {"ways", json_of(r.ways)}};
+                             {"effects", effects},         {"regions", json_of(r.regions)},
+                             {"bare", json_of(r.bare)},    {"ways", json_of(r.ways)}};
     return json.dump(2, ' ', false, EffectJson::error_handler_t::replace) + "\n";
 }
 

@@ -29,15 +29,26 @@ struct Named {
 
 void FramesInUse::add(const model::Model& m, std::span<const TrianglesByEffect> of_reps, std::span<const model::Index> reps) {
     ++frames;
-    TrianglesByEffect here{};
-    for (const model::Index rep : reps) {
-        triangles += m.reps[rep].triangles;
-        for (std::size_t e = 0; e < here.size(); ++e) here[e] += of_reps[rep][e];
+    for (std::size_t e = 0; e < triangles_with.size(); ++e) {
+        model::Index largest = model::none;
+        for (const model::Index rep : reps) {
+            if (of_reps[rep][e] == 0) continue;
+            triangles_with[e] += of_reps[rep][e];
+            ++items_with[e];
+            if (largest == model::none || of_reps[rep][e] > of_reps[largest][e]) largest = rep;
+        }
+        if (largest == model::none) continue;
+        if (++frames_with[e] > 1) continue;
+        first_frame[e] = frames - 1;
+        first_rep[e] = largest;
     }
-    for (std::size_t e = 0; e < here.size(); ++e) {
-        triangles_with[e] += here[e];
-        if (here[e] > 0) ++frames_with[e];
-    }
+    for (const model::Index rep : reps) triangles += m.reps[rep].triangles;
+}
+
+model::Index node_of(const model::Model& m, model::Index rep) {
+    for (model::Index n = 0; n < m.nodes.size(); ++n)
+        if (rep >= m.nodes[n].first_rep && rep < m.nodes[n].first_rep + m.nodes[n].rep_count) return n;
+    return model::none;
 }
 
 double FramesInUse::share_of_frames(std::size_t effect) const { return share(frames_with[effect], frames); }

@@ -23,6 +23,9 @@ struct FramesInUse {
     std::uint64_t triangles = 0;
     std::array<std::uint32_t, model::effect_count> frames_with{};  ///< in which any drawn item has the effect
     TrianglesByEffect triangles_with{};
+    std::array<std::uint64_t, model::effect_count> items_with{};   ///< of all frames
+    std::array<std::uint32_t, model::effect_count> first_frame{};  ///< with such an item, if there is one
+    std::array<model::Index, model::effect_count> first_rep{};     ///< of these items, the one with most triangles
 
     /// Adds a frame that draws these representations. of_reps: triangles_of_reps() of the model.
     void add(const model::Model& model, std::span<const TrianglesByEffect> of_reps, std::span<const model::Index> reps);
@@ -45,6 +48,9 @@ struct UseOfEffects {
     FramesInUse full, walked;
     double rate_hz = walked_rate_hz;
 };
+
+/// The node that a representation is a form of; none: there is none.
+model::Index node_of(const model::Model& model, model::Index rep);
 
 /// Draws nothing. Call it on the thread that draws. Ends early where the user stops it.
 UseOfEffects measure_use(Engine& engine, std::span<const Pose> poses, const Progress& progress);

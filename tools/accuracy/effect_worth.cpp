@@ -6,6 +6,8 @@
 #include <bit>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "render/effects/effects.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/statistics.hpp"
@@ -89,6 +91,25 @@ private:
     const Progress& progress_;
 };
 
+/// Why items along the path have an effect, or why none has.
+std::string along_path(const model::Model& m, const UseOfEffects& use, std::size_t bit, bool called_for) {
+    const FramesInUse& walked = use.walked;
+    if (walked.frames == 0) return {};
+    if (walked.frames_with[bit] == 0)
+        return fmt::format("No item has it in {} of {} frames: {}.", walked.frames, walked.frames,
+                           called_for ? "what has it is not in view, or hidden" : "the model does not call for it");
+    const model::Index rep = walked.first_rep[bit], node = node_of(m, rep);
+    std::uint64_t with = 0;
+    for (model::Index p = m.reps[rep].first_part; p < m.reps[rep].first_part + m.reps[rep].part_count; ++p)
+        if ((m.materials[m.parts[p].material].effects >> bit & 1U) != 0) with += m.parts[p].index_count / 3;
+    std::string name = node == model::none ? "" : m.name_of(m.nodes[node]);
+    if (name.empty()) name = "no name";
+    return fmt::format(
+        "{} of {} frames have no item with it. The first that has one is frame {}: node {} ({}) is in view there, and "
+        "{} of its {} triangles have it.",
+        walked.frames - walked.frames_with[bit], walked.frames, walked.first_frame[bit], node, name, with, m.reps[rep].triangles);
+}
+
 /// What the bake found, and what the path has of it.
 EffectWorth found_effect(const effects::EffectModule& module, std::size_t bit, const model::Model& model,
                          const UseOfEffects& use) {
@@ -107,6 +128,9 @@ EffectWorth found_effect(const effects::EffectModule& module, std::size_t bit, c
     effect.walked_frames_share = use.walked.share_of_frames(bit);
     effect.walked_triangles_share = use.walked.share_of_triangles(bit);
     effect.where = holders_of(model, bit);
+    effect.walked_frames = use.walked.frames_with[bit];
+    effect.walked_items = use.walked.items_with[bit];
+    effect.along_path = along_path(model, use, bit, effect.called_for);
     return effect;
 }
 
@@ -145,6 +169,7 @@ Result<EffectReport> measure_effects(const PlacesRequest& request, const Progres
     report.height = request.height;
     report.poses = request.poses;
     report.hour = request.hour;
+    report.regions = regions_of(*model);
     const std::vector<Pose> poses = poses_along(chosen->path, request.poses);
     progress.update("frames in use", 0);
     auto use = measure_whole(request, chosen->path, poses, progress, report);

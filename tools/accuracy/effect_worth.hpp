@@ -7,6 +7,7 @@
 
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
+#include "tools/accuracy/effect_regions.hpp"
 #include "tools/accuracy/effect_use.hpp"
 #include "tools/accuracy/effect_ways.hpp"
 #include "tools/accuracy/picture_difference.hpp"
@@ -30,6 +31,9 @@ struct EffectWorth {
     double frames_share = 0, triangles_share = 0;                ///< in full detail
     double walked_frames_share = 0, walked_triangles_share = 0;  ///< as a walk at walked_rate_hz selects
     std::vector<Holder> where;                                   ///< of its triangles in full detail; empty: there are none
+    std::uint32_t walked_frames = 0;                             ///< with the effect, of EffectReport::use_frames
+    std::uint64_t walked_items = 0;                              ///< with it, in all of them
+    std::string along_path;                                      ///< why items of the walk have it, or why none has: a sentence
 };
 
 /// All that the page shows.
@@ -38,7 +42,8 @@ struct EffectReport {
     std::uint32_t width = 0, height = 0, poses = 0;
     double hour = -1;                  ///< of the day; below 0: the model's own light
     std::vector<EffectWorth> effects;  ///< all, in the order of application
-    std::uint32_t use_frames = 0;      ///< of the shares of frames
+    std::vector<EffectRegion> regions;
+    std::uint32_t use_frames = 0;  ///< of the shares of frames
     ThreeWays ways;
     WithAndWithout bare;  ///< without any: ways.bare beside ways.as_called_for
 };

@@ -3,6 +3,7 @@
 
 #include "render/effects/effects.hpp"
 #include "render/model/walk_file.hpp"
+#include "tools/accuracy/effect_regions.hpp"
 #include "tools/accuracy/effect_worth.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
@@ -67,6 +68,34 @@ int run_report(EffectsArguments& a, const Context& context) {
     return exit_success;
 }
 
+nlohmann::ordered_json json_of(const std::vector<accuracy::EffectRegion>& regions) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const accuracy::EffectRegion& region : regions) {
+        nlohmann::ordered_json effects = nlohmann::ordered_json::array();
+        for (const accuracy::RegionEffect& e : region.effects)
+            effects.push_back({{"effect", e.name},
+                               {"called_for", e.called_for},
+                               {"coarse_forms_alone", e.coarse_only},
+                               {"triangles", e.triangles},
+                               {"reason", e.reason}});
+        const Box& box = region.box;
+        list.push_back({{"node", region.node},
+                        {"name", region.name},
+                        {"box_m", {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}}},
+                        {"leaves", region.leaves},
+                        {"triangles", region.triangles},
+                        {"effects", effects}});
+    }
+    return list;
+}
+
+void print_regions(const std::vector<accuracy::EffectRegion>& regions) {
+    fmt::print("\nregions of the hierarchy:\n");
+    for (const accuracy::EffectRegion& region : regions)
+        fmt::print("  node {}, {}: {} triangles\n    {}\n    {}\n", region.node, region.name, region.triangles,
+                   accuracy::effects_in_words(region), accuracy::reasons_in_words(region));
+}
+
 int run_effects(const EffectsArguments& a) {
     auto m = model::read_walk(a.request.model_file);
     if (!m) return fail(m.error());
@@ -91,15 +120,21 @@ int run_effects(const EffectsArguments& a) {
         for (const model::EffectFinding& f : m->effects)
             if (f.bit == effect.bit) show(effect.name, effect.help, effect.requested_by, f);
     show("motion", "nodes move as animations say, and loop; no program of its own", "animated nodes", model::motion_finding(*m));
-    if (a.json) print_json({{"model", a.request.model_file}, {"effects", list}});
+    const std::vector<accuracy::EffectRegion> regions = accuracy::regions_of(*m);
+    if (a.json) {
+        print_json({{"model", a.request.model_file}, {"effects", list}, {"regions", json_of(regions)}});
+    } else {
+        print_regions(regions);
+    }
     return exit_success;
 }
 }  // namespace
 
 void add_effects(CLI::App& app, Context& context) {
     auto a = std::make_shared<EffectsArguments>();
-    CLI::App* c = add_command(app, "effects", "List the effects of a model with the reason for each; unused effects cost nothing",
-                              "surefoot effects town.walk\n  surefoot effects town.walk --report effects", a->json);
+    CLI::App* c = add_command(
+        app, "effects", "List the effects of a model and of its regions, with the reason for each; unused effects cost nothing",
+        "surefoot effects town.walk\n  surefoot effects town.walk --report effects", a->json);
     accuracy::PlacesRequest& r = a->request;
     c->add_option("model", r.model_file, "The .walk model")->required();
     CLI::Option* report =

@@ -1,0 +1,71 @@
+// Unions and sums from the leaves up.
+#include "render/model/effects_below.hpp"
+
+#include <algorithm>
+
+namespace surefoot::model {
+
+namespace {
+
+void add_full_detail(const Model& model, Index leaf, RegionEffects& to) {
+    const Node& node = model.nodes[leaf];
+    const Representation& full = model.reps[node.first_rep + node.rep_count - 1];
+    to.full |= full.effects;
+    to.leaves = 1;
+    to.largest = leaf;
+    for (Index p = full.first_part; p < full.first_part + full.part_count; ++p) {
+        const std::uint64_t triangles = model.parts[p].index_count / 3;
+        to.triangles += triangles;
+        for (std::size_t e = 0; e < to.with_effect.size(); ++e)
+            if ((model.materials[model.parts[p].material].effects >> e & 1U) != 0) to.with_effect[e] += triangles;
+    }
+}
+
+}  // namespace
+
+std::vector<RegionEffects> effects_below(const Model& model) {
+    std::vector<RegionEffects> out(model.nodes.size());
+    for (auto n = static_cast<Index>(model.nodes.size()); n-- > 0;) {
+        const Node& node = model.nodes[n];
+        RegionEffects& here = out[n];
+        const bool is_leaf = node.child_count == 0;
+        for (Index r = node.first_rep; r + (is_leaf ? 1U : 0U) < node.first_rep + node.rep_count; ++r)
+            here.coarse |= model.reps[r].effects;
+        if (is_leaf) add_full_detail(model, n, here);
+        for (Index c = node.first_child; c < node.first_child + node.child_count; ++c) {
+            const RegionEffects& below = out[c];
+            here.full |= below.full;
+            here.coarse |= below.coarse;
+            here.triangles += below.triangles;
+            here.leaves += below.leaves;
+            for (std::size_t e = 0; e < here.with_effect.size(); ++e) here.with_effect[e] += below.with_effect[e];
+            const bool larger =
+                here.largest == none || model.nodes[below.largest].triangles > model.nodes[here.largest].triangles;
+            if (larger) here.largest = below.largest;
+        }
+    }
+    return out;
+}
+
+std::vector<Index> main_regions(const Model& model, std::size_t max_count) {
+    std::vector<Index> out;
+    if (model.nodes.empty()) return out;
+    out.push_back(0);
+    const auto more = [&](Index a, Index b) {
+        const std::uint64_t of_a = model.nodes[a].triangles, of_b = model.nodes[b].triangles;
+        return of_a != of_b ? of_a > of_b : a < b;
+    };
+    while (true) {
+        const auto parent = std::find_if(out.begin(), out.end(), [&](Index n) {
+            const std::uint32_t children = model.nodes[n].child_count;
+            return children > 0 && out.size() - 1 + children <= max_count;
+        });
+        if (parent == out.end()) return out;
+        const Node& node = model.nodes[*parent];
+        out.erase(parent);
+        for (std::uint32_t c = 0; c < node.child_count; ++c) out.push_back(node.first_child + c);
+        std::sort(out.begin(), out.end(), more);
+    }
+}
+
+}  // namespace surefoot::model

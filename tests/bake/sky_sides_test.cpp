@@ -1,0 +1,161 @@
+// What sees no sky becomes pieces apart from what does: walls with two sides, and one mesh in places of both kinds.
+#include "render/bake/sky_sides.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "render/bake/bake.hpp"
+#include "render/bake/cluster.hpp"
+#include "render/model/effects_below.hpp"
+#include "render/model/walk_file.hpp"
+#include "rt/base/file.hpp"
+#include "tests/bake/house_scene.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace surefoot {
+namespace {
+
+model::Model baked_house(const importer::Scene& scene, bake::Quality quality = bake::Quality::full, int workers = 0) {
+    bake::BakeOptions options;
+    options.quality = quality;
+    options.workers = workers;
+    auto model = bake::bake(scene, options, {});
+    EXPECT_TRUE(model.ok()) << (model.ok() ? "" : model.error().text());
+    return std::move(*model);
+}
+
+/// Leaves of a name, and the effects of their full detail.
+std::vector<std::pair<model::Index, model::EffectMask>> leaves_named(const model::Model& m, const std::string& name) {
+    std::vector<std::pair<model::Index, model::EffectMask>> out;
+    for (model::Index n = 0; n < m.nodes.size(); ++n)
+        if (m.nodes[n].child_count == 0 && name == m.name_of(m.nodes[n]))
+            out.emplace_back(n, m.reps[m.nodes[n].first_rep + m.nodes[n].rep_count - 1].effects);
+    return out;
+}
+
+bool has_sun(model::EffectMask effects) { return (effects & model::effect_sun) != 0; }
+
+TEST(SkySides, AWallsInnerSideIsAPieceWithoutTheSun) {
+    const model::Model m = baked_house(lit::house_scene());
+    std::uint64_t with = 0, without = 0;
+    const auto pieces = leaves_named(m, "house");
+    ASSERT_GE(pieces.size(), 2U);
+    for (const auto& [n, effects] : pieces) {
+        EXPECT_EQ(m.nodes[n].kind, model::NodeKind::piece);
+        (has_sun(effects) ? with : without) += m.nodes[n].triangles;
+        if (has_sun(effects)) continue;
+        EXPECT_NE(effects & model::effect_openness, 0U);
+        EXPECT_GT(m.nodes[n].box.min.x, -4.9) << "the outer side is in the open";
+        for (model::Index r = m.nodes[n].first_rep; r < m.nodes[n].first_rep + m.nodes[n].rep_count; ++r)
+            EXPECT_FALSE(has_sun(m.reps[r].effects)) << "nor has a coarse form of a closed room: " << r;
+    }
+    EXPECT_GE(without, 192U) << "of the closed room";
+    EXPECT_GE(with, 192U) << "of the outer side";
+}
+
+TEST(SkySides, AMeshInRoomsAndOutsideHasTheSunOutsideAlone) {
+    const model::Model m = baked_house(lit::house_scene());
+    const auto cups = leaves_named(m, "cup");
+    ASSERT_EQ(cups.size(), 6U) << "one form serves each place";
+    std::size_t lit = 0;
+    for (const auto& [n, effects] : cups) {
+        EXPECT_EQ(has_sun(effects), m.nodes[n].box.centre().z > 5) << n;
+        EXPECT_EQ(m.nodes[n].kind, model::NodeKind::object);
+        lit += has_sun(effects) ? 1 : 0;
+        const model::Representation& full = m.reps[m.nodes[n].first_rep + m.nodes[n].rep_count - 1];
+        const model::Part& part = m.parts[full.first_part];
+        if (!has_sun(effects)) {
+            EXPECT_EQ(m.vertices[part.first_vertex].hidden[0], 255) << "the one outside is no part of its mean";
+        }
+    }
+    EXPECT_EQ(lit, 1U);
+}
+
+TEST(SkySides, RegionsThatSeeNoSkyCallForNoSun) {
+    const model::Model m = baked_house(lit::house_scene());
+    const std::vector<model::RegionEffects> below = model::effects_below(m);
+    ASSERT_EQ(m.nodes[0].child_count, 2U) << "closed rooms, and the rest";
+    const model::RegionEffects &rooms = below[m.nodes[0].first_child], &open = below[m.nodes[0].first_child + 1];
+    EXPECT_FALSE(has_sun(rooms.full | rooms.coarse)) << "no form of it, clusters included";
+    EXPECT_TRUE(has_sun(open.full));
+    EXPECT_TRUE(has_sun(below[0].full));
+    EXPECT_EQ(rooms.triangles + open.triangles, m.triangles());
+    EXPECT_EQ(below[0].with_effect[2], open.with_effect[2]);
+    EXPECT_EQ(rooms.with_effect[2], 0U);
+    std::uint64_t triangles = 0;
+    for (const model::Index n : model::main_regions(m, 8)) triangles += m.nodes[n].triangles;
+    EXPECT_EQ(triangles, m.triangles()) << "regions hold each leaf once";
+}
+
+TEST(SkySides, ASheetWithASideInTheOpenKeepsTheSun) {
+    importer::Scene scene = lit::house_scene();
+    scene.materials.resize(2);
+    scene.materials[1].two_sided = true;
+    // A shed of four sheets and a roof: each sees the room on one side and the sky on the other.
+    importer::Primitive shed;
+    lit::add_faces(shed, vec3(-2, 0, -2), vec3(2, 3, 2), false);
+    shed.material = 1;
+    lit::put(scene, std::move(shed), "shed", dvec3(0, 0, 12));
+    const model::Model m = baked_house(scene);
+    for (const auto& [n, effects] : leaves_named(m, "shed")) EXPECT_TRUE(has_sun(effects)) << n;
+}
+
+TEST(SkySides, DraftsAndScenesInTheOpenAreNotDivided) {
+    const model::Model draft = baked_house(lit::house_scene(), bake::Quality::draft);
+    EXPECT_EQ(leaves_named(draft, "house").size(), 1U);
+    EXPECT_EQ(leaves_named(draft, "cup").size(), 6U);
+    importer::Scene open;
+    lit::put(open, lit::floor_of(20, 20), "ground", dvec3(0));
+    lit::put(open, lit::post(), "post", dvec3(3, 0, 0));
+    const model::Model full = baked_house(open);
+    EXPECT_EQ(full.nodes.size(), 3U);
+    EXPECT_EQ(leaves_named(full, "post").size(), 1U);
+}
+
+TEST(SkySides, AreTheSameAtAnyNumberOfWorkers) {
+    const test::TemporaryFolder folder;
+    std::vector<std::string> files;
+    for (const int workers : {1, 3}) {
+        const std::string file = folder / ("house" + std::to_string(workers) + ".walk");
+        ASSERT_TRUE(model::write_walk(file, baked_house(lit::house_scene(), bake::Quality::full, workers)).ok());
+        files.push_back(*read_text(file));
+    }
+    EXPECT_TRUE(files[0] == files[1]) << "the same bytes";
+}
+
+TEST(Clusters, OfTwoKindsAreApartBelowTheRoot) {
+    std::vector<Box> boxes;
+    std::vector<bool> kind;
+    for (int i = 0; i < 40; ++i) {
+        const dvec3 at(i % 8, 0, i / 8);
+        boxes.push_back({at, at + dvec3(0.5)});
+        kind.push_back(i % 3 == 0);
+    }
+    const bake::ClusterTree tree = bake::grow_clusters_apart(boxes, kind, 8);
+    ASSERT_EQ(tree.root, 40 + tree.clusters.size() - 1);
+    ASSERT_EQ(tree.clusters.back().children.size(), 2U);
+    std::vector<int> found(40, 0);
+    for (std::size_t k = 0; k < 2; ++k) {
+        std::vector<std::uint32_t> open{tree.clusters.back().children[k]};
+        while (!open.empty()) {
+            const std::uint32_t e = open.back();
+            open.pop_back();
+            if (e < 40) {
+                ++found[e];
+                EXPECT_EQ(kind[e], k == 0);
+                continue;
+            }
+            const auto& cluster = tree.clusters[e - 40];
+            open.insert(open.end(), cluster.children.begin(), cluster.children.end());
+        }
+    }
+    EXPECT_EQ(std::count(found.begin(), found.end(), 1), 40) << "each box once";
+    const bake::ClusterTree one = bake::grow_clusters_apart(boxes, std::vector<bool>(40, true), 8);
+    EXPECT_EQ(one.clusters.size(), bake::grow_clusters(boxes, 8).clusters.size()) << "one kind needs no root of two";
+}
+
+}  // namespace
+}  // namespace surefoot

@@ -1,0 +1,58 @@
+// A walk in a closed room draws nothing with the sun; one outside does; and a room with a window does.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "render/bake/bake.hpp"
+#include "render/engine.hpp"
+#include "tests/bake/house_scene.hpp"
+
+namespace surefoot {
+namespace {
+
+/// An engine of the house that draws nothing.
+std::unique_ptr<Engine> engine_of_house() {
+    bake::BakeOptions bake_options;
+    bake_options.quality = bake::Quality::full;
+    auto model = bake::bake(lit::house_scene(), bake_options, {});
+    EXPECT_TRUE(model.ok());
+    EngineOptions options;
+    options.device.kind = gl::BackendKind::null;
+    options.device.viewport = {320, 180};
+    auto engine = Engine::open(std::move(*model), model::default_costs(), options);
+    EXPECT_TRUE(engine.ok());
+    return std::move(*engine);
+}
+
+/// How many items of the cut have the sun, and how many have not.
+std::pair<int, int> items_with_sun(Engine& engine, const dvec3& at, double turn_rad) {
+    Pose pose;
+    pose.position = at;
+    pose.orientation = glm::angleAxis(turn_rad, dvec3(0, 1, 0));
+    prepare::PreparedFrame prepared;
+    engine.reserve(prepared);
+    engine.prepare({pose, 0.3, 0.1}, 0, 0, 0, prepared);
+    std::pair<int, int> out;
+    for (const select::CutItem& item : engine.select(prepared, 30'000, {}, 0).items)
+        ++((engine.model().reps[item.rep].effects & model::effect_sun) != 0 ? out.first : out.second);
+    return out;
+}
+
+TEST(ClosedRooms, AreDrawnWithoutTheSunFromWithin) {
+    const auto engine = engine_of_house();
+    for (int i = 0; i < 16; ++i) {
+        const dvec3 at(-2.5 + 1.2 * std::sin(i), 1.6, 0.9 * std::cos(2.0 * i));
+        const auto [with, without] = items_with_sun(*engine, at, 2 * std::numbers::pi * i / 16);
+        EXPECT_EQ(with, 0) << i;
+        EXPECT_GT(without, 0) << i;
+    }
+}
+
+TEST(ClosedRooms, AreDrawnWithTheSunFromOutsideAndBehindAWindow) {
+    const auto engine = engine_of_house();
+    EXPECT_GT(items_with_sun(*engine, dvec3(0, 1.6, 15), 0).first, 0) << "the outer side";
+    EXPECT_GT(items_with_sun(*engine, dvec3(1, 1.6, 0), -std::numbers::pi / 2).first, 0) << "towards the window";
+}
+
+}  // namespace
+}  // namespace surefoot
