@@ -76,8 +76,9 @@ namespace {
 
 struct Loose {
     std::uint32_t part, corner[3];
-    vec3 centre;
-    vec3 area;  ///< seen along each axis
+    vec3 centre;  ///< times three
+    vec3 area;    ///< seen along each axis
+    int facing;   ///< down and up along x, y, z
 };
 
 /// Whether triangles with this box and these areas hide each other in layers. The far side of a wall does not count as a layer.
@@ -183,11 +184,14 @@ std::vector<Loose> loose_triangles(const Geometry& whole) {
     for (std::uint32_t p = 0; p < whole.parts.size(); ++p) {
         const auto& indices = whole.parts[p].indices;
         for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-            Loose t{p, {indices[i], indices[i + 1], indices[i + 2]}, {}, {}};
+            Loose t{p, {indices[i], indices[i + 1], indices[i + 2]}, {}, {}, 0};
             const vec3 a = position_of(whole.vertices[t.corner[0]]), b = position_of(whole.vertices[t.corner[1]]),
                        c = position_of(whole.vertices[t.corner[2]]);
             t.centre = a + b + c;
-            t.area = 0.5F * glm::abs(glm::cross(b - a, c - a));
+            const vec3 normal = glm::cross(b - a, c - a);
+            t.area = 0.5F * glm::abs(normal);
+            const int axis = t.area.x >= t.area.y && t.area.x >= t.area.z ? 0 : t.area.z >= t.area.y ? 2 : 1;
+            t.facing = 2 * axis + (normal[axis] > 0 ? 1 : 0);
             triangles.push_back(t);
         }
     }
@@ -222,6 +226,57 @@ std::size_t part_by_sky(std::vector<Loose>& triangles, const SkySides& sides, do
     return closed;
 }
 
+/// Orders triangles by the planes that they lie in, roughly, and returns where each plane ends. What is left over comes last. The
+/// outer side of a building in one piece would be a box round all of it, which nothing hides from within.
+std::vector<std::size_t> part_by_planes(std::span<Loose> triangles, double stretch) {
+    constexpr double apart_m = 0.3, min_area_m2 = 0.25;
+    const auto offset = [](const Loose& t) { return t.centre[t.facing / 2]; };
+    std::sort(triangles.begin(), triangles.end(), [&](const Loose& a, const Loose& b) {
+        if (a.facing != b.facing) return a.facing < b.facing;
+        if (offset(a) != offset(b)) return offset(a) < offset(b);
+        return std::lexicographical_compare(a.corner, a.corner + 3, b.corner, b.corner + 3);
+    });
+    std::vector<Loose> parted, rest;
+    std::vector<std::size_t> ends;
+    for (std::size_t from = 0, to = 0; from < triangles.size(); from = to) {
+        double area_m2 = 0;
+        for (to = from; to < triangles.size(); ++to) {
+            const Loose& t = triangles[to];
+            const bool same = to == from || (t.facing == triangles[from].facing &&
+                                             static_cast<double>(offset(t) - offset(triangles[to - 1])) * stretch < 3 * apart_m);
+            if (!same) break;
+            area_m2 += static_cast<double>(glm::length(t.area)) * stretch * stretch;
+        }
+        const auto group = triangles.subspan(from, to - from);
+        std::vector<Loose>& into = area_m2 < min_area_m2 ? rest : parted;
+        into.insert(into.end(), group.begin(), group.end());
+        if (&into == &parted) ends.push_back(parted.size());
+    }
+    if (!rest.empty()) ends.push_back(triangles.size());
+    std::copy(rest.begin(), rest.end(), std::copy(parted.begin(), parted.end(), triangles.begin()));
+    return ends;
+}
+
+/// Cuts triangles that see sky, of a mesh whose others are walls of rooms.
+void cut_outer_side(const Geometry& whole, std::span<Loose> triangles, bool few, CutLimits limits, std::vector<CutPiece>& out) {
+    constexpr double building_m = 8;
+    Box box;
+    for (const Loose& t : triangles)
+        for (const std::uint32_t c : t.corner) box.grow(dvec3(position_of(whole.vertices[c])));
+    const dvec3 size = (box.max - box.min) * limits.stretch;
+    if (std::max({size.x, size.y, size.z}) < building_m) {
+        cut_range(whole, triangles, few, limits, out);
+        return;
+    }
+    limits.longest_m = std::max(limits.longest_m, building_m / limits.stretch);
+    limits.min_triangles = std::min(limits.min_triangles, 4U);
+    std::size_t from = 0;
+    for (const std::size_t end : part_by_planes(triangles, limits.stretch)) {
+        cut_range(whole, triangles.subspan(from, end - from), few, limits, out);
+        from = end;
+    }
+}
+
 /// Empty if the whole stays one.
 std::vector<CutPiece> cut_by_sky(const Geometry& whole, const CutLimits& limits, const SkySides& sides) {
     std::vector<Loose> triangles = loose_triangles(whole);
@@ -230,8 +285,12 @@ std::vector<CutPiece> cut_by_sky(const Geometry& whole, const CutLimits& limits,
     const std::size_t closed = part_by_sky(triangles, sides, limits.stretch);
     const std::span<Loose> all(triangles);
     dvec3 size;
-    if (closed > 0) cut_range(whole, all.first(closed), few, limits, pieces);
-    if (closed > 0 || is_cut(all, whole, few, limits, size)) cut_range(whole, all.subspan(closed), few, limits, pieces);
+    if (closed > 0) {
+        cut_range(whole, all.first(closed), few, limits, pieces);
+        cut_outer_side(whole, all.subspan(closed), few, limits, pieces);
+    } else if (is_cut(all, whole, few, limits, size)) {
+        cut_range(whole, all, few, limits, pieces);
+    }
     return pieces;
 }
 

@@ -245,7 +245,13 @@ float Refiner::sky_at(const dvec3& from, const dvec3& normal) const {
         ++faced;
         open += light_.opaque->is_blocked({from, way, far_m_}) ? 0 : 1;
     }
-    return faced > 0 ? 0.4F * std::min(1.0F, 4.0F * static_cast<float>(open) / static_cast<float>(faced)) : 0.0F;
+    if (faced > 0) return 0.4F * std::min(1.0F, 4.0F * static_cast<float>(open) / static_cast<float>(faced));
+    // A ceiling looks down: what its rim sees beyond the walls, above the horizon, is no light of its middle.
+    const auto sees_out = [&](const dvec3& way) {
+        return !light_.opaque->is_blocked(
+            {from, glm::normalize(dvec3(way.x, 0.1 * glm::length(dvec2(way.x, way.z)), way.z)), far_m_});
+    };
+    return std::any_of(sky_.begin(), sky_.end(), sees_out) ? 0.4F : 0.0F;
 }
 
 LightSample Refiner::light_at(const dvec3& at, const dvec3& normal) const {

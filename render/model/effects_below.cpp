@@ -47,6 +47,14 @@ std::vector<RegionEffects> effects_below(const Model& model) {
     return out;
 }
 
+bool has_rooms_apart(const Model& model) {
+    if (model.nodes.empty() || model.nodes[0].child_count != 2 || (model.called_for() & effect_openness) == 0) return false;
+    const std::vector<RegionEffects> below = effects_below(model);
+    const RegionEffects &rooms = below[model.nodes[0].first_child], &open = below[model.nodes[0].first_child + 1];
+    return ((rooms.full | rooms.coarse) & effect_sun) == 0 && (rooms.full & effect_openness) != 0 &&
+           (open.full & effect_sun) != 0;
+}
+
 std::vector<Index> main_regions(const Model& model, std::size_t max_count) {
     std::vector<Index> out;
     if (model.nodes.empty()) return out;

@@ -22,6 +22,9 @@ struct RegionEffects {
 /// One for each node. In one pass, children before their parents.
 std::vector<RegionEffects> effects_below(const Model& model);
 
+/// Whether what sees no sky is a tree of its own below the root, beside one that calls for the sun.
+bool has_rooms_apart(const Model& model);
+
 /// Nodes that cover all leaves once, at most max_count: the root, then what has most triangles gives way to its children. Those
 /// with most triangles first.
 std::vector<Index> main_regions(const Model& model, std::size_t max_count);

@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "render/model/model.hpp"
+#include "render/model/effects_below.hpp"
 
 namespace surefoot::prepare {
 
@@ -85,6 +85,7 @@ private:
 Occluders find_occluders(const model::Model& model, std::uint32_t max_occluders) {
     Occluders out;
     if (model.nodes.empty()) return out;
+    out.has_rooms = model::has_rooms_apart(model);
     Largest largest(max_occluders);
     std::uint64_t order = 0;
     for (const model::Node& node : model.nodes) {

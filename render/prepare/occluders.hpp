@@ -26,6 +26,7 @@ struct Occluders {
     std::vector<dvec3> corners;  ///< world; corners within one 0.1 mm cell are merged
     std::vector<Occluder> triangles;
     std::uint32_t edge_count = 0;  ///< two triangles share an edge if they share both its corners
+    bool has_rooms = false;        ///< model::has_rooms_apart()
 };
 
 /// The `max_occluders` largest occluders; none if the model has no opaque surface. Deterministic; about 0.1 us a triangle of the

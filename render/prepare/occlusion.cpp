@@ -14,8 +14,16 @@ constexpr double margin_rad = 0.15;       ///< beside the view, for what is seen
 constexpr double widest_half_rad = 80.0 / 180.0 * 3.14159265358979323846;
 constexpr float depth_slack = 1e-4F;  ///< of a depth: rounding, and up to 3e-5 by which draw/coincidence.hpp moves surfaces
 constexpr float rounding = 1e-6F;     ///< of lengths in float
-constexpr float deep_ratio = 1.25F;   ///< of depths in a box: beyond it, its parts are looked at
-constexpr int max_parts = 40;
+/// How a box is taken apart. deep: the ratio of depths beyond which its parts are looked at; max_pixels: the same of their
+/// number.
+struct PartLimits {
+    float deep;
+    int max_pixels, max_parts;
+    std::size_t max_stack;
+};
+constexpr PartLimits usual_parts{1.25F, 1 << 30, 40, 12};
+/// The outer side of a wall lies right behind its inner side: only small parts show that. It takes microseconds a box.
+constexpr PartLimits parts_behind_rooms{1.02F, 32, 1000, 40};
 constexpr double far_m = 1e6;  ///< for the frustum's second test only: it has no far plane
 constexpr std::uint32_t no_triangle = 0xffffffffU;
 
@@ -262,14 +270,15 @@ bool Occlusion::hides(const Box& box) const {
     if (empty_ || box.empty()) return false;
     if (!(box.distance(eye_) > static_cast<double>(radius_m_))) return false;
     // A large box is hidden where its parts are, each at a depth of its own.
-    std::array<Box, 12> stack;
+    const PartLimits& limits = occluders_.has_rooms ? parts_behind_rooms : usual_parts;
+    std::array<Box, parts_behind_rooms.max_stack> stack;
     std::size_t top = 0;
     stack[top++] = box;
     for (int tests = 0; top > 0; ++tests) {
         const Box part = stack[--top];
         const Hidden found = look(part);
         if (found == Hidden::yes) continue;
-        if (found == Hidden::no || tests == max_parts || top + 2 > stack.size()) return false;
+        if (found == Hidden::no || tests == limits.max_parts || top + 2 > limits.max_stack) return false;
         // Across the axis that adds most to its depth.
         const dvec3 size = (part.max - part.min) * (glm::abs(forward_) + 0.1);
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.z >= size.y ? 2 : 1;
@@ -314,7 +323,12 @@ Occlusion::Hidden Occlusion::look(const Box& box) const {
     const bool sure = !reaches_out || box.distance(eye_) > static_cast<double>(clamp_from_m_) * 1.001;
     const Rect rect = pixels(x0, x1, y0, y1);
     if (sure && !rect.empty() && nearer_than(1.0F / (nearest * (1.0F - depth_slack)), rect)) return Hidden::yes;
-    return farthest > deep_ratio * nearest || reaches_out ? Hidden::in_parts : Hidden::no;
+    if (!occluders_.has_rooms) return farthest > usual_parts.deep * nearest || reaches_out ? Hidden::in_parts : Hidden::no;
+    if (!model::visible(frustum_, box)) return Hidden::yes;
+    const PartLimits& limits = parts_behind_rooms;
+    const int pixels_seen = rect.empty() ? 0 : (rect.x1 - rect.x0 + 1) * (rect.y1 - rect.y0 + 1);
+    const bool large = farthest > limits.deep * nearest || reaches_out || pixels_seen > limits.max_pixels;
+    return large ? Hidden::in_parts : Hidden::no;
 }
 
 }  // namespace surefoot::prepare

@@ -9,7 +9,7 @@
 namespace surefoot::lit {
 
 /// Adds a rectangle of 2 n * n triangles whose normal points along u x v.
-inline void add_sheet(importer::Primitive& to, const vec3& middle, const vec3& u, const vec3& v, std::uint32_t n = 4) {
+inline void add_sheet(importer::Primitive& to, const vec3& middle, const vec3& u, const vec3& v, std::uint32_t n = 5) {
     const importer::Primitive one = sheet(middle, u, v, n);
     const auto base = static_cast<std::uint32_t>(to.positions.size());
     to.positions.insert(to.positions.end(), one.positions.begin(), one.positions.end());
@@ -45,19 +45,19 @@ inline void add_face_with_hole(importer::Primitive& to, float x, const vec2& low
     }
 }
 
-/// Walls of 20 cm. The west room is closed: -4.8..-0.1, 0.1..3.1, -2.4..2.4. The east room has the window.
+/// Walls of half a metre. The west room is closed: -4.8..-0.3, 0.6..3.4, -2.4..2.4. The east room has the window.
 inline importer::Primitive house() {
     importer::Primitive walls;
-    add_faces(walls, vec3(-5, 0, -2.6F), vec3(5, 3.3F, 2.6F), false, true);
-    add_face_with_hole(walls, 5, vec2(0, -2.6F), vec2(3.3F, 2.6F), true);
-    add_faces(walls, vec3(-4.8F, 0.1F, -2.4F), vec3(-0.1F, 3.1F, 2.4F), true);
-    add_faces(walls, vec3(0.1F, 0.1F, -2.4F), vec3(4.8F, 3.1F, 2.4F), true, true);
-    add_face_with_hole(walls, 4.8F, vec2(0.1F, -2.4F), vec2(3.1F, 2.4F), false);
-    const float sill = 1.1F, top = 2.1F;  // the reveal, between the two holes
-    add_sheet(walls, vec3(4.9F, sill, 0), vec3(0, 0, 0.5F), vec3(0.1F, 0, 0), 1);
-    add_sheet(walls, vec3(4.9F, top, 0), vec3(0.1F, 0, 0), vec3(0, 0, 0.5F), 1);
-    add_sheet(walls, vec3(4.9F, 1.6F, -0.5F), vec3(0.1F, 0, 0), vec3(0, 0.5F, 0), 1);
-    add_sheet(walls, vec3(4.9F, 1.6F, 0.5F), vec3(0, 0.5F, 0), vec3(0.1F, 0, 0), 1);
+    add_faces(walls, vec3(-5.3F, 0, -2.9F), vec3(5.3F, 4, 2.9F), false, true);
+    add_face_with_hole(walls, 5.3F, vec2(0, -2.9F), vec2(4, 2.9F), true);
+    add_faces(walls, vec3(-4.8F, 0.6F, -2.4F), vec3(-0.3F, 3.4F, 2.4F), true);
+    add_faces(walls, vec3(0.3F, 0.6F, -2.4F), vec3(4.8F, 3.4F, 2.4F), true, true);
+    add_face_with_hole(walls, 4.8F, vec2(0.6F, -2.4F), vec2(3.4F, 2.4F), false);
+    const float sill = 1.5F, top = 2.5F, middle = 5.05F, half = 0.25F;  // the reveal, between the two holes
+    add_sheet(walls, vec3(middle, sill, 0), vec3(0, 0, 0.5F), vec3(half, 0, 0), 1);
+    add_sheet(walls, vec3(middle, top, 0), vec3(half, 0, 0), vec3(0, 0, 0.5F), 1);
+    add_sheet(walls, vec3(middle, 2, -0.5F), vec3(half, 0, 0), vec3(0, 0.5F, 0), 1);
+    add_sheet(walls, vec3(middle, 2, 0.5F), vec3(0, 0.5F, 0), vec3(half, 0, 0), 1);
     return walls;
 }
 
