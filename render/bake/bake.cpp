@@ -33,7 +33,7 @@ namespace surefoot::bake {
 namespace {
 
 constexpr std::uint32_t min_box_triangles = 64, min_piece_box_triangles = 256, min_plain_box_triangles = 500;
-constexpr std::uint64_t min_apart = 16;  // a share of the triangles: 1/16
+constexpr std::uint64_t min_apart = 16;                         // a share of the triangles: 1/16
 constexpr std::uint32_t max_box_cell = 32, min_box_cell = 16;   // texels of a face's picture, with its rim
 constexpr std::size_t max_box_bytes = std::size_t{128} << 20U;  // of all pictures of boxes while they are judged
 /// Six faces of four bytes a texel, and mip levels.

@@ -71,8 +71,8 @@ CutLimits cut_limits(const MeshInScene& mesh);
 /// Pieces within the limits, cut at medians of the triangle centres. Empty if the whole is within the limits.
 std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits);
 /// One form, or one a piece if the geometry exceeds the limits. Pieces meet in full detail, and in
-/// coarser levels as long as possible. `notes`: why stand-ins are left out, one line each. With `sides`, triangles that see no
-/// sky anywhere are pieces apart from the others, if they are walls of a room; and forms are closed or not in each place.
+/// coarser levels as long as possible. `notes`: why stand-ins are left out, one line each. `sides`: what sees no sky anywhere is
+/// in pieces apart from the rest, if it is walls of a room. Forms are closed or not in each place.
 std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options,
                                  std::span<const ArtistStandIn> stand_ins = {}, std::vector<std::string>* notes = nullptr,
                                  const SkySides& sides = {});

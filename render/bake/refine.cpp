@@ -23,7 +23,6 @@ namespace {
 constexpr std::size_t max_cut_places = 4;
 constexpr double max_round_m = 64, min_round_m = 1;  // edges of at least so much are cut, round by round
 constexpr float max_off = 0.12F;                     // of light: between the mean of the ends and what is there
-constexpr float sees_out_light = 0.4F;               // of a side that sees any sky at all
 constexpr std::size_t sun_rays = 6, sky_rays = 8;
 constexpr double one_degree = std::numbers::pi / 180;
 constexpr std::uint64_t min_added = 20'000;
@@ -159,7 +158,7 @@ private:
         const importer::Material& material = scene_.materials[p.material];
         return !material.unlit && material.alpha == model::AlphaMode::opaque && p.normals.size() == p.positions.size();
     }
-    [[nodiscard]] LightSample light_at(const dvec3& at, const dvec3& normal, bool two_sided) const;
+    [[nodiscard]] LightSample light_at(const dvec3& at, const dvec3& normal) const;
     [[nodiscard]] float sky_at(const dvec3& from, const dvec3& normal) const;
     [[nodiscard]] static bool is_off(const LightSample& is, const LightSample& mean) {
         for (std::size_t i = 0; i < is.size(); ++i)
@@ -246,16 +245,10 @@ float Refiner::sky_at(const dvec3& from, const dvec3& normal) const {
         ++faced;
         open += light_.opaque->is_blocked({from, way, far_m_}) ? 0 : 1;
     }
-    if (faced > 0) return 0.4F * std::min(1.0F, 4.0F * static_cast<float>(open) / static_cast<float>(faced));
-    // A ceiling looks down: what its rim sees beyond the walls, above the horizon, is no light of its middle.
-    const auto sees_out = [&](const dvec3& way) {
-        return !light_.opaque->is_blocked(
-            {from, glm::normalize(dvec3(way.x, 0.1 * glm::length(dvec2(way.x, way.z)), way.z)), far_m_});
-    };
-    return std::any_of(sky_.begin(), sky_.end(), sees_out) ? sees_out_light : 0.0F;
+    return faced > 0 ? 0.4F * std::min(1.0F, 4.0F * static_cast<float>(open) / static_cast<float>(faced)) : 0.0F;
 }
 
-LightSample Refiner::light_at(const dvec3& at, const dvec3& normal, bool two_sided) const {
+LightSample Refiner::light_at(const dvec3& at, const dvec3& normal) const {
     LightSample out{};
     const dvec3 from = at + ray_lift_m * normal;
     for (std::size_t i = 0; i < sun_rays; ++i) {
@@ -270,8 +263,6 @@ LightSample Refiner::light_at(const dvec3& at, const dvec3& normal, bool two_sid
         out[sun_rays] = (shown.r + shown.g + shown.b) / 3;
     }
     out[sun_rays + 1] = sky_at(from, normal);
-    // In a closed room the side that shows may be the back.
-    if (two_sided && out[sun_rays + 1] == 0 && sky_at(at - ray_lift_m * normal, -normal) > 0) out[sun_rays + 1] = sees_out_light;
     return out;
 }
 
@@ -279,7 +270,6 @@ void Refiner::find_changes(const importer::Primitive& p, const dmat4& place, dou
                            std::vector<std::uint64_t>& keys) const {
     const dmat3 normals = glm::transpose(glm::inverse(dmat3(place)));
     const std::vector<dvec3> at = placed_points(p, place);
-    const bool two_sided = scene_.materials[p.material].two_sided;
     const auto normal_of = [&](const vec3& n) {
         const dvec3 turned = normals * dvec3(n);
         const double size = glm::length(turned);
@@ -287,7 +277,7 @@ void Refiner::find_changes(const importer::Primitive& p, const dmat4& place, dou
     };
     const auto at_vertex = [&](std::uint32_t v) -> const LightSample& {
         const auto [found, is_new] = known.at_vertex.try_emplace(v);
-        if (is_new) found->second = light_at(at[v], normal_of(p.normals[v]), two_sided);
+        if (is_new) found->second = light_at(at[v], normal_of(p.normals[v]));
         return found->second;
     };
     const auto edge_changes = [&](std::uint32_t a, std::uint32_t b) {
@@ -299,8 +289,7 @@ void Refiner::find_changes(const importer::Primitive& p, const dmat4& place, dou
             const float t = static_cast<float>(k) / static_cast<float>(steps);
             const vec3 n = p.normals[a] + t * (p.normals[b] - p.normals[a]);
             const dvec3 there = at[a] + static_cast<double>(t) * (at[b] - at[a]);
-            if (is_off(light_at(there, normal_of(n), two_sided), mean_of(first, last, last, {1 - t, t, 0})))
-                return found->second = true;
+            if (is_off(light_at(there, normal_of(n)), mean_of(first, last, last, {1 - t, t, 0}))) return found->second = true;
         }
         return false;
     };
@@ -313,7 +302,7 @@ void Refiner::find_changes(const importer::Primitive& p, const dmat4& place, dou
                 const vec3 w = vec3(i, j, steps - i - j) / static_cast<float>(steps);
                 const dvec3 there = dvec3(w.x) * at[v[0]] + dvec3(w.y) * at[v[1]] + dvec3(w.z) * at[v[2]];
                 const vec3 n = w.x * p.normals[v[0]] + w.y * p.normals[v[1]] + w.z * p.normals[v[2]];
-                if (is_off(light_at(there, normal_of(n), two_sided), mean_of(a, b, c, w))) return true;
+                if (is_off(light_at(there, normal_of(n)), mean_of(a, b, c, w))) return true;
             }
         return false;
     };

@@ -12,7 +12,7 @@ namespace surefoot::bake {
 namespace {
 
 constexpr std::size_t min_rising = 6;  // rays that tell of the sky: of a wall, half of them
-constexpr double min_way_up = 0.1;         // rays to the sky rise: what lies below the horizon is ground
+constexpr double min_way_up = 0.1;     // rays to the sky rise: what lies below the horizon is ground
 
 bool rises(const dvec3& way) { return way.y >= min_way_up; }
 
