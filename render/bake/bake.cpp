@@ -65,6 +65,7 @@ struct BakeContext {
     ClosedVertices closed;  ///< of chains that see no sky
     SceneLight light;
     std::vector<bool> hidden;  ///< by material: its mask shows nothing
+    std::vector<float> covered = {};  ///< MeasuredLosses::covered
 
     ProxyInput proxy_input() const;
     void place_objects();
@@ -428,6 +429,7 @@ bool BakeContext::measure_pictures() {
     MeasuredLosses measured = measure_losses(
         model, [](std::size_t count, const std::function<void(std::size_t)>& body) { for_all(count, body); },
         [&] { return stage.step(); });
+    covered = std::move(measured.covered);
     measured.move_to(model);
     return !model.losses.empty();
 }
@@ -480,7 +482,7 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         context.measure_areas();
         done = context.measure_pictures();
         if (!done) return;
-        boxes->drop_idle(costs_of(options));
+        boxes->drop_idle(costs_of(options), context.covered);
         context.measure_areas();
         fill_scene_light(context.model);
         context.find_effects();

@@ -1,6 +1,7 @@
 // Leaves are drawn one by one; clusters are put together from their children's pictures, a face after the other.
 #include "render/bake/boxes.hpp"
 
+#include "render/bake/level_coverage.hpp"
 #include "render/model/loss_groups.hpp"
 
 #include <algorithm>
@@ -21,6 +22,15 @@ std::vector<Index> wanted_leaves(const model::Model& model, const BoxRequest& re
     for (Index n = 0; n < model.nodes.size(); ++n)
         if (model.nodes[n].child_count == 0 && request.wanted[n]) leaves.push_back(n);
     return leaves;
+}
+
+/// Whether a node's box covers about as much as full detail does, or nothing else is coarse.
+bool box_covers(const model::Model& model, const Node& node, const std::vector<float>& covered) {
+    if (covered.empty()) return true;
+    const auto share = static_cast<double>(covered[node.first_rep]);
+    if (share >= min_covered && share <= max_covered) return true;
+    const Index next = node.first_rep + 1;
+    return node.rep_count < 2 || model::is_full_detail(node, next, model.reps[next].error_m);
 }
 
 }  // namespace
@@ -132,7 +142,7 @@ bool PlacedBoxes::is_best_somewhere(const Node& node, const model::CostModel& co
     return false;
 }
 
-std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs) {
+std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs, const std::vector<float>& covered) {
     const model::LossGroups groups(model_);
     std::vector<model::PictureLoss> losses;
     std::vector<model::LossOfGroup> group_losses;
@@ -140,7 +150,7 @@ std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs) {
     for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
         const Node& node = model_.nodes[n];
         const bool had = boxes_[n].shown_faces() > 0;
-        const bool keeps = had && is_best_somewhere(node, costs);
+        const bool keeps = had && box_covers(model_, node, covered) && is_best_somewhere(node, costs);
         if (had && !keeps) boxes_[n].faces = {};
         left += keeps ? 1 : 0;
         for (Index r = node.first_rep + (had && !keeps ? 1 : 0); r < node.first_rep + node.rep_count; ++r)

@@ -30,8 +30,9 @@ class PlacedBoxes {
 public:
     PlacedBoxes(std::vector<BoxForm> boxes, model::Index proxy, model::Model& model);
     /// Takes out the boxes that are best at no size on the screen: others look about as good for no more time. Call it once the
-    /// losses are measured. Returns how many are left.
-    std::size_t drop_idle(const model::CostModel& costs);
+    /// losses are measured. Those that cover too little or too much of full detail go too, if a coarse mesh is left.
+    /// covered: MeasuredLosses::covered; empty: not known. Returns how many are left.
+    std::size_t drop_idle(const model::CostModel& costs, const std::vector<float>& covered = {});
 
 private:
     void insert();

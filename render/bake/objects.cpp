@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "render/bake/baked_colours.hpp"
+#include "render/bake/level_coverage.hpp"
 #include "render/bake/prisms.hpp"
 
 namespace surefoot::bake {
@@ -311,7 +312,9 @@ MeshForm make_form(Geometry geometry, const ChainOptions& options) {
     form.box.min = local.min + geometry.centre;
     form.box.max = local.max + geometry.centre;
     form.chain = make_chain(std::move(geometry), options);
+    std::vector<Level> poor = take_poor_levels(form.chain, options);
     add_prisms(form.chain, options);
+    put_back_poor_level(form.chain, std::move(poor));
     return form;
 }
 

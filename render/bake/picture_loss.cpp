@@ -22,10 +22,6 @@ using model::RepKind;
 
 constexpr std::uint32_t pixels_across = 64;
 
-/// Round about, mostly as a walker sees things, and some from above and below.
-constexpr std::array<std::array<double, 2>, 6> directions = {
-    {{0.3, 0.15}, {1.35, 0.6}, {2.4, -0.15}, {3.44, 0.15}, {4.49, 0.6}, {5.53, -0.15}}};
-
 /// What is measured, and which leaves take the figures of another.
 struct Plan {
     std::vector<Index> leaves;                  ///< one for all of one mesh
@@ -121,7 +117,7 @@ void Measuring::measure_leaf(std::size_t i) {
     const Index index = plan.leaves[i];
     const Node& node = model.nodes[index];
     FormPicture full, form;
-    for (const auto& [azimuth_rad, elevation_rad] : directions) {
+    for (const auto& [azimuth_rad, elevation_rad] : loss_directions) {
         full.clear(view_of(node.box, direction_of(azimuth_rad, elevation_rad), tree.middle(), pixels_across));
         form.clear(full.view);
         draw_form(model, model.reps[node.first_rep + node.rep_count - 1], full);
@@ -182,16 +178,22 @@ std::vector<model::LossOfGroup> Measuring::group_losses(const ColourSpread& of_m
 }
 
 MeasuredLosses Measuring::losses() const {
-    MeasuredLosses out{std::vector<PictureLoss>(model.reps.size()), {}, colours()};
+    MeasuredLosses out{std::vector<PictureLoss>(model.reps.size()), std::vector<float>(model.reps.size(), 1.0F), {}, colours()};
     out.groups = group_losses(out.colours);
     for (const auto& [leaf, as] : plan.same) {
         const Node &node = model.nodes[leaf], &measured = model.nodes[plan.leaves[as]];
-        for (std::uint32_t k = 0; k + 1 < node.rep_count; ++k)
-            out.forms[node.first_rep + k] = differences[measured.first_rep + k].loss(out.colours);
+        for (std::uint32_t k = 0; k + 1 < node.rep_count; ++k) {
+            const PictureDifference& of = differences[measured.first_rep + k];
+            out.forms[node.first_rep + k] = of.loss(out.colours);
+            out.covered[node.first_rep + k] = static_cast<float>(of.covered());
+        }
     }
     for (const Node& node : model.nodes) {
         if (node.child_count == 0) continue;
-        for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) out.forms[r] = differences[r].loss(out.colours);
+        for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
+            out.forms[r] = differences[r].loss(out.colours);
+            out.covered[r] = static_cast<float>(differences[r].covered());
+        }
     }
     return out;
 }
@@ -255,7 +257,7 @@ PictureLoss PictureDifference::loss(const model::ColourSpread& of_model) const {
 }
 
 std::size_t loss_steps(const Model& model) {
-    return plan_of(model).leaves.size() + directions.size() * PictureTree(model).clusters();
+    return plan_of(model).leaves.size() + loss_directions.size() * PictureTree(model).clusters();
 }
 
 MeasuredLosses measure_losses(const Model& model, const ForAll& for_all, const std::function<bool()>& step) {
@@ -266,7 +268,7 @@ MeasuredLosses measure_losses(const Model& model, const ForAll& for_all, const s
         measuring.measure_leaf(i);
         if (!step()) go = false;
     });
-    for (const auto& [azimuth_rad, elevation_rad] : directions) {
+    for (const auto& [azimuth_rad, elevation_rad] : loss_directions) {
         if (!go) break;
         const auto compare = [&](Index node, const FormPicture& full) {
             FormPicture form;

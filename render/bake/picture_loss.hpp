@@ -11,6 +11,10 @@
 
 namespace surefoot::bake {
 
+/// Azimuth and elevation of the eye, rad: round about, mostly as a walker sees things, and some from above and below.
+constexpr std::array<std::array<double, 2>, 6> loss_directions = {
+    {{0.3, 0.15}, {1.35, 0.6}, {2.4, -0.15}, {3.44, 0.15}, {4.49, 0.6}, {5.53, -0.15}}};
+
 /// Sums over pictures of one form against full detail. Whole numbers: the order does not matter.
 struct PictureDifference {
     /// Pictures of one view. levels: 1 where textures do not differ by level.
@@ -22,6 +26,13 @@ struct PictureDifference {
     /// Zero where neither picture shows anything.
     [[nodiscard]] model::PictureLoss loss(const model::ColourSpread& of_model) const;
 
+    /// Samples that the form covers.
+    [[nodiscard]] std::uint64_t form() const { return 2 * either - one - full_detail; }
+    /// To those that full detail covers. 1 where that shows nothing.
+    [[nodiscard]] double covered() const {
+        return full_detail > 0 ? static_cast<double>(form()) / static_cast<double>(full_detail) : 1;
+    }
+
     using ByLevel = std::array<std::uint64_t, picture_levels>;
     std::uint64_t full_detail = 0, either = 0, one = 0;  ///< samples that it covers, that either covers, that only one covers
     ByLevel both{};                                      ///< squared differences of bytes, where both cover
@@ -32,9 +43,10 @@ struct PictureDifference {
 /// What measure_losses() found.
 struct MeasuredLosses {
     std::vector<model::PictureLoss> forms;   ///< one a form of the model; empty: stopped
+    std::vector<float> covered;              ///< one a form: samples that it covers, to those of full detail
     std::vector<model::LossOfGroup> groups;  ///< as Model::group_losses
     model::ColourSpread colours;
-    /// To the model that was measured. Leaves this empty.
+    /// To the model that was measured, which holds no `covered`.
     void move_to(model::Model& model);
 };
 
