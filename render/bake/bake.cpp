@@ -49,23 +49,23 @@ struct BakeContext {
     const importer::Scene& scene;
     const BakeOptions& options;
     const Progress& progress;
-    model::Model model;
-    model::Index proxy = 0;             ///< a material with vertex colours
-    model::Index proxy_or_none = 0;     ///< the same, or none where every colour is a material's own
-    std::vector<PlacedObject> objects;  ///< pieces count each
-    std::uint32_t object_count = 0;     ///< conceptual ones
-    std::vector<MeshForm> forms;
-    ClusterTree tree;
-    std::vector<ClusterForm> clusters;
-    std::vector<std::vector<std::uint32_t>> members;  ///< by cluster: the objects below it
-    std::vector<std::uint32_t> entities;              ///< by node: the object, or after these the cluster
-    std::vector<bool> cut_out;                        ///< by material
-    std::unique_ptr<LightRays> rays;                  ///< none: light is not measured
-    RefinedMeshes refined;
-    ClosedVertices closed;  ///< of chains that see no sky
-    SceneLight light;
-    std::vector<bool> hidden;  ///< by material: its mask shows nothing
-    std::vector<float> covered = {};  ///< MeasuredLosses::covered
+    model::Model model{};
+    model::Index proxy = 0;               ///< a material with vertex colours
+    model::Index proxy_or_none = 0;       ///< the same, or none where every colour is a material's own
+    std::vector<PlacedObject> objects{};  ///< pieces count each
+    std::uint32_t object_count = 0;       ///< conceptual ones
+    std::vector<MeshForm> forms{};
+    ClusterTree tree{};
+    std::vector<ClusterForm> clusters{};
+    std::vector<std::vector<std::uint32_t>> members{};  ///< by cluster: the objects below it
+    std::vector<std::uint32_t> entities{};              ///< by node: the object, or after these the cluster
+    std::vector<bool> cut_out{};                        ///< by material
+    std::unique_ptr<LightRays> rays{};                  ///< none: light is not measured
+    RefinedMeshes refined{};
+    ClosedVertices closed{};  ///< of chains that see no sky
+    SceneLight light{};
+    std::vector<bool> hidden{};    ///< by material: its mask shows nothing
+    std::vector<float> covered{};  ///< MeasuredLosses::covered
 
     ProxyInput proxy_input() const;
     void place_objects();
@@ -437,7 +437,7 @@ bool BakeContext::measure_pictures() {
 }  // namespace
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
-    BakeContext context{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    BakeContext context{scene, options, progress};
     context.cut_out = cut_out_materials(scene);
     context.hidden = hidden_materials(scene, context.model.provenance.warnings);
     context.proxy = add_materials(scene, context.model);

@@ -91,6 +91,13 @@ int main(int argc, char** argv) {
     }
     nlohmann::ordered_json out;
     out["model"] = argv[1];
+    std::size_t forms = 0, off_all = 0;
+    for (const auto& [kind, off] : kinds) {
+        forms += off.forms;
+        off_all += off.small + off.large;
+    }
+    out["forms"] = forms;
+    out["forms_off"] = off_all;
     for (const auto& [kind, off] : kinds)
         out[kind] = {{"forms", off.forms}, {"below_half", off.small}, {"above_twice", off.large}};
     fmt::print("{}\n", out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
