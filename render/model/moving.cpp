@@ -46,19 +46,30 @@ Box MovingNode::box() const {
 MovingNodes::MovingNodes(const Model& model) : model_(&model) {
     if (model.motions.empty()) return;
     slot_of_node_.assign(model.nodes.size(), none);
+    std::vector<Box> moved_by(model.motions.size());  // all that a motion moves: its limits are worked out once
     for (Index n = 0; n < model.nodes.size(); ++n) {
         const Node& node = model.nodes[n];
         Slot slot;
         slot.motion = motion_of(model, node);
         if (slot.motion == none) continue;
         slot.rest = rest_box_of(model, node);
-        slot.max_speed_mps = reach_of(model, slot.motion, slot.rest).speed_mps;
-        slot.jumps = has_jumps(model, slot.motion);
+        moved_by[slot.motion].grow(slot.rest);
         slot_of_node_[n] = static_cast<Index>(slots_.size());
         slots_.push_back(slot);
         if (node.parent == none || slot_of_node_[node.parent] == none) roots_.push_back(n);
     }
     if (slots_.empty()) slot_of_node_.clear();
+    std::vector<double> max_speed_mps(moved_by.size(), 0);
+    std::vector<bool> jumps(moved_by.size(), false);
+    for (Index m = 0; m < moved_by.size(); ++m) {
+        if (moved_by[m].empty()) continue;
+        max_speed_mps[m] = reach_of(model, m, moved_by[m]).speed_mps;
+        jumps[m] = has_jumps(model, m);
+    }
+    for (Slot& slot : slots_) {
+        slot.max_speed_mps = max_speed_mps[slot.motion];
+        slot.jumps = jumps[slot.motion];
+    }
 }
 
 void MovingNodes::set_span(double from_s, double to_s) {
