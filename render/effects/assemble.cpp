@@ -3,6 +3,7 @@
 #include <array>
 
 #include "render/effects/modules.hpp"
+#include "render/effects/surface_light.hpp"
 
 namespace surefoot::effects {
 
@@ -46,6 +47,25 @@ std::vector<const EffectModule*> modules_of(model::EffectMask mask) {
 }
 
 }  // namespace
+
+std::vector<model::EffectPrice> usual_prices() {
+    std::vector<model::EffectPrice> prices;
+    for (const EffectModule& module : all_effects())
+        if (module.priced_on != 0) prices.push_back(module.usual_price);
+    return prices;
+}
+
+vec3 light_of(const SurfacePoint& point, model::EffectMask mask, const model::Daylight& light) {
+    SurfaceLight out;
+    std::array<const EffectModule*, model::effect_count> in_order{};
+    std::size_t count = 0;
+    for (const EffectModule& module : all_effects())
+        if ((mask & module.bit) != 0 && module.light != nullptr) in_order[count++] = &module;
+    std::stable_sort(in_order.begin(), in_order.begin() + static_cast<std::ptrdiff_t>(count),
+                     [](const auto* a, const auto* b) { return a->order < b->order; });
+    for (std::size_t i = 0; i < count; ++i) in_order[i]->light(point, light, out);
+    return out.lit;
+}
 
 std::string effects_text(model::EffectMask mask, std::string_view between) {
     std::string text;

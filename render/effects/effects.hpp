@@ -7,10 +7,14 @@
 #include <vector>
 
 #include "render/gl/device.hpp"
+#include "render/model/cost.hpp"
 #include "render/model/effects.hpp"
 #include "render/model/model.hpp"
 
 namespace surefoot::effects {
+
+struct SurfacePoint;
+struct SurfaceLight;
 
 /// One effect: what asks for it, and its GLSL pieces for the named slots of the bare program.
 struct EffectModule {
@@ -24,10 +28,18 @@ struct EffectModule {
     /// vertex_code may read the normal `n` and whether it was `turned` to the eye; write `lit`, and of it the share `by_sun`.
     bool is_light = false;
     int order = 0;  ///< of application; effects of the same order go by bit
+    /// Of a module with light: what vertex_code does, on the processor. The difference that it makes is the effect's worth.
+    void (*light)(const SurfacePoint& point, const model::Daylight& of_moment, SurfaceLight& out) = nullptr;
+    /// Its cost adds to that of a state class, and calibration measures it on this one. 0: grids of state classes hold its cost.
+    model::EffectMask priced_on = 0;
+    /// Until it is measured: as on llvmpipe with two cores. `effect` is `bit` or, without a price, 0.
+    model::EffectPrice usual_price = {};
 };
 
 /// In bit order. To add one: its bit, a file in this folder, and its line in modules.hpp and assemble.cpp.
 std::span<const EffectModule> all_effects();
+/// The usual prices of those that have one, in bit order.
+std::vector<model::EffectPrice> usual_prices();
 /// "texture sun", or "bare".
 std::string effects_text(model::EffectMask mask, std::string_view between = " ");
 

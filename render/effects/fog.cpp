@@ -13,6 +13,8 @@ constexpr EffectModule fog{
     .fragment_declarations = "uniform vec3 fog_colour;\nuniform float fog_density;\n",
     .fragment_code = "    colour.rgb = mix(fog_colour, colour.rgb, exp2(-fog_density / gl_FragCoord.w));\n",
     .order = 9,
+    .priced_on = model::effect_texture | model::effect_sun,
+    .usual_price = {model::effect_fog, 0, 2.4F, 0.46F},
 };
 const EffectModule fog_module = fog;
 

@@ -1,8 +1,21 @@
 // Effect: light by what a vertex sees, as baked. Where it sees no sky, a room's light takes the place of sun and sky; what is
 // near it shades it. A little sky is enough for the sun: a street is no room.
+#include <algorithm>
+
 #include "render/effects/modules.hpp"
+#include "render/effects/surface_light.hpp"
 
 namespace surefoot::effects {
+
+namespace {
+
+void light_by_openness(const SurfacePoint& point, const model::Daylight& of_moment, SurfaceLight& out) {
+    const vec3& n = point.normal;
+    const vec3 room = of_moment.room_light * (vec3(0.98F, 0.95F, 0.91F) + (0.06F * n.x + 0.12F * n.y - 0.04F * n.z));
+    out.lit = glm::mix(room, out.lit, std::min(1.0F, 4.0F * point.sees_sky)) * (0.6F + 0.4F * point.sees_room);
+}
+
+}  // namespace
 
 constexpr EffectModule openness{
     .bit = model::effect_openness,
@@ -18,6 +31,9 @@ constexpr EffectModule openness{
     .fragment_code = "",
     .is_light = true,
     .order = 4,
+    .light = light_by_openness,
+    .priced_on = model::effect_texture | model::effect_sun,
+    .usual_price = {model::effect_openness, 0, 0, 0},
 };
 const EffectModule openness_module = openness;
 

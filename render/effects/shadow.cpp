@@ -1,7 +1,21 @@
 // Effect: shadows that do not move with things. How much of the sun a vertex sees at two moments, between which it now is.
+#include <algorithm>
+
 #include "render/effects/modules.hpp"
+#include "render/effects/surface_light.hpp"
 
 namespace surefoot::effects {
+
+namespace {
+
+void take_shadow(const SurfacePoint& point, const model::Daylight& of_moment, SurfaceLight& out) {
+    const auto seen = [&](std::uint32_t moment) { return static_cast<float>(point.sun_seen.share[moment]) / 255.0F; };
+    const std::uint32_t moment = std::min(of_moment.sun_moment, model::sun_moments - 1);
+    const float before = seen(moment), after = seen(moment + 1);
+    out.lit -= out.by_sun * (1.0F - (before + (after - before) * of_moment.sun_between));
+}
+
+}  // namespace
 
 constexpr EffectModule shadow{
     .bit = model::effect_shadow,
@@ -14,6 +28,9 @@ constexpr EffectModule shadow{
     .fragment_code = "",
     .is_light = true,
     .order = 3,
+    .light = take_shadow,
+    .priced_on = model::effect_texture | model::effect_sun,
+    .usual_price = {model::effect_shadow, 0.9F, 0, 0},
 };
 const EffectModule shadow_module = shadow;
 

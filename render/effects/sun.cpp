@@ -1,7 +1,19 @@
 // Effect: sun and sky light, computed at the vertices (Gouraud): a hemisphere from ground to sky plus one directional sun.
+#include <algorithm>
+
 #include "render/effects/modules.hpp"
+#include "render/effects/surface_light.hpp"
 
 namespace surefoot::effects {
+
+namespace {
+
+void light_by_sun(const SurfacePoint& point, const model::Daylight& of_moment, SurfaceLight& out) {
+    out.by_sun = of_moment.sun_light * std::max(glm::dot(point.normal, of_moment.sun_direction), 0.0F);
+    out.lit *= glm::mix(of_moment.ground_light, of_moment.sky_light, 0.5F * point.normal.y + 0.5F) + out.by_sun;
+}
+
+}  // namespace
 
 constexpr EffectModule sun{
     .bit = model::effect_sun,
@@ -16,6 +28,9 @@ constexpr EffectModule sun{
     .fragment_declarations = "",
     .fragment_code = "",
     .is_light = true,
+    .light = light_by_sun,
+    .priced_on = model::effect_texture,
+    .usual_price = {model::effect_sun, 2.3F, 1.4F, 0.06F},
 };
 const EffectModule sun_module = sun;
 

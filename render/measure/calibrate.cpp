@@ -3,6 +3,7 @@
 #include "render/measure/calibrate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -56,6 +57,7 @@ public:
     Result<void> cells(Calibration& out);
     Result<void> frames(Calibration& out);
     Result<void> levers(Calibration& out);
+    Result<void> prices(Calibration& out);
 
 private:
     /// The frame twice: the second finds warm caches, as a walk's frames do.
@@ -258,6 +260,32 @@ Result<void> Run::levers(Calibration& out) {
     return {};
 }
 
+/// With and without each effect in turns; which one comes first changes as well. The median of the pairs' differences counts.
+Result<void> Run::prices(Calibration& out) {
+    const int pairs = options_.quick ? 9 : 21;
+    std::vector<PricePoint> points;
+    for (const PriceCell& cell : scene_.prices) {
+        if (progress_.stopped()) return stopped;
+        progress_.update("effects", static_cast<double>(points.size()) / static_cast<double>(scene_.prices.size()));
+        const std::size_t slice = std::max<std::size_t>(1, (cell.with.size() + 2) / 3);
+        const auto count = static_cast<double>(cell.with.size());
+        std::vector<double> submit, raster;
+        for (int i = 0; i < pairs; ++i) {
+            std::array<FrameTiming, 2> of{};
+            for (const bool second : {false, true}) {
+                const bool with = second == (i % 2 == 0);
+                of[with ? 1 : 0] = timed(Pose{}, with ? cell.with : cell.without, slice);
+            }
+            submit.push_back((of[1].submit_us - of[0].submit_us) / count);
+            raster.push_back((of[1].raster_us - of[0].raster_us) / count);
+        }
+        points.push_back({cell.effect, cell.triangles, cell.pixels, median_of(std::move(submit)), median_of(std::move(raster))});
+    }
+    out.costs.prices = fit_prices(points);
+    out.costs.prices_measured = !out.costs.prices.empty();
+    return {};
+}
+
 FrameSample Run::predict(const TownView& view, const model::ItemCosts& costs) const {
     const model::ViewScale scale = model::make_view_scale(view.pose, options_.device.viewport);
     FrameSample sample;
@@ -330,6 +358,7 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
     run.enlarging(out);
     if (auto done = run.cells(out); !done) return done.error();
     if (auto done = run.frames(out); !done) return done.error();
+    if (auto done = run.prices(out); !done) return done.error();
     if (auto done = run.levers(out); !done) return done.error();
     if ((*device)->lost())
         return Error{"calibration", "The device was lost, so its times mean nothing", "Restart the driver, and try again",

@@ -53,6 +53,8 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
 constexpr double max_enlarge_ns = 100;
 /// Largest CostModel::ns_per_pixel.
 constexpr double max_ns_per_pixel = 100;
+/// Of EffectPrice, for a triangle.
+constexpr double max_effect_ns_per_triangle = 1e5;
 /// Of CostModel::sample_share, sample_pass_ns_per_pixel and trilinear_factor.
 constexpr double max_sample_share = 4, max_sample_pass_ns = 100, max_trilinear_factor = 4;
 

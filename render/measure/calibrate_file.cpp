@@ -3,6 +3,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -23,6 +25,18 @@ constexpr std::uint32_t max_steps = 32;
 constexpr int format_version = 1;
 constexpr int estimate = 2;  // what is counted: 1 by boxes and whole representations, at a median; 2 as model::ItemCosts does
 const char* const remedy = "Run `surefoot calibrate` on this machine";
+
+/// A figure of an effect's price in the file.
+struct PriceKey {
+    std::string_view name;
+    float model::EffectPrice::*of;
+    double max_ns;
+};
+constexpr std::array<PriceKey, 3> price_keys = {{
+    {"submit_ns_per_triangle", &model::EffectPrice::submit_ns_per_triangle, max_effect_ns_per_triangle},
+    {"raster_ns_per_triangle", &model::EffectPrice::raster_ns_per_triangle, max_effect_ns_per_triangle},
+    {"raster_ns_per_pixel", &model::EffectPrice::raster_ns_per_pixel, max_ns_per_pixel},
+}};
 
 std::string hash_text(std::string_view body) {
     return fmt::format("{:016x}", hash_bytes(std::as_bytes(std::span<const char>(body))));
@@ -76,6 +90,11 @@ std::string body_of(const model::CostModel& costs) {
             grid.effects, grid.triangle_steps, grid.pixel_steps);
         add_numbers(text, "submit_us", grid, &model::ItemCost::submit_us);
         add_numbers(text, "raster_us", grid, &model::ItemCost::raster_us);
+    }
+    if (!costs.prices_measured) return text;
+    for (const model::EffectPrice& price : costs.prices) {
+        text += fmt::format("\n# what an effect adds to an item\n[[price]]\neffect = {}\n", price.effect);
+        for (const PriceKey& key : price_keys) text += fmt::format("{} = {:.9g}\n", key.name, static_cast<double>(price.*key.of));
     }
     return text;
 }
@@ -143,6 +162,26 @@ void read_blur(TableReader& top, model::CostModel& costs) {
     costs.blur_measured = true;
 }
 
+/// Absent: none, and said to be so. Returns the key that is wrong; "": none is.
+std::string read_prices(const toml::table& table, const std::string& file, model::CostModel& costs) {
+    const toml::array* prices = table["price"].as_array();
+    if (prices == nullptr) return table.contains("price") ? "price" : "";
+    for (const auto& entry : *prices) {
+        if (!entry.is_table()) return "price";
+        TableReader values(*entry.as_table(), file, "price");
+        model::EffectPrice price;
+        price.effect = needed_count(values, "effect", 0x7fffffffU);
+        const bool twice = std::any_of(costs.prices.begin(), costs.prices.end(),
+                                       [&](const model::EffectPrice& other) { return other.effect == price.effect; });
+        if (!std::has_single_bit(price.effect) || twice) values.refuse("effect", "is no effect, or comes twice", remedy);
+        for (const PriceKey& key : price_keys) price.*key.of = needed_number(values, key.name, 0, key.max_ns);
+        if (!values.wrong_key().empty()) return values.wrong_key();
+        costs.prices.push_back(price);
+    }
+    costs.prices_measured = !costs.prices.empty();
+    return {};
+}
+
 Result<model::CostModel> costs_of(const toml::table& table, const std::string& file) {
     model::CostModel costs;
     const auto refuse = [&](const std::string& key) {
@@ -185,6 +224,7 @@ Result<model::CostModel> costs_of(const toml::table& table, const std::string& f
         if (!values.wrong_key().empty()) return refuse(values.wrong_key());
         costs.grids.push_back(std::move(grid));
     }
+    if (const std::string wrong = read_prices(table, file, costs); !wrong.empty()) return refuse(wrong);
     return costs;
 }
 

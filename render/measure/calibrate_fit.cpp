@@ -263,6 +263,47 @@ std::optional<float> dearer_factor_of(std::span<const WorkPair> pairs, double ma
     return static_cast<float>(std::clamp(median_of(std::move(ratios)), 1.0, max));
 }
 
+namespace {
+
+/// x >= 0 and y >= 0 with the least sum of ((a x + b y - c) / scale)^2, where a row is {a, b, c, scale}.
+std::array<double, 2> two_prices(std::span<const std::array<double, 4>> rows) {
+    double aa = 0, ab = 0, bb = 0, ac = 0, bc = 0;
+    for (const auto& [a, b, c, scale] : rows) {
+        const double weight = 1 / (scale * scale);
+        aa += weight * a * a, ab += weight * a * b, bb += weight * b * b, ac += weight * a * c, bc += weight * b * c;
+    }
+    const auto alone = [](double square, double right) { return square > 0 ? std::max(0.0, right / square) : 0.0; };
+    const double determinant = aa * bb - ab * ab;
+    if (determinant > 1e-9 * aa * bb) {
+        const double x = (ac * bb - bc * ab) / determinant, y = (bc * aa - ac * ab) / determinant;
+        if (x >= 0 && y >= 0) return {x, y};
+        if (x < 0) return {0, alone(bb, bc)};
+    }
+    return {alone(aa, ac), 0};
+}
+
+}  // namespace
+
+std::vector<model::EffectPrice> fit_prices(std::span<const PricePoint> points) {
+    std::vector<model::EffectPrice> prices;
+    for (const PricePoint& first : points) {
+        const auto known = [&](const model::EffectPrice& price) { return price.effect == first.effect; };
+        if (std::any_of(prices.begin(), prices.end(), known)) continue;
+        std::vector<std::array<double, 4>> submit, raster;
+        for (const PricePoint& p : points) {
+            if (p.effect != first.effect || !std::isfinite(p.submit_us) || !std::isfinite(p.raster_us)) continue;
+            const double scale = std::max(1.0, p.triangles + p.pixels);  // points of any size count alike
+            submit.push_back({p.triangles, 0, p.submit_us, scale});
+            raster.push_back({p.triangles, p.pixels, p.raster_us, scale});
+        }
+        const auto ns = [](double us, double max) { return static_cast<float>(std::min(1e3 * us, max)); };
+        const std::array<double, 2> of_raster = two_prices(raster);
+        prices.push_back({first.effect, ns(two_prices(submit)[0], max_effect_ns_per_triangle),
+                          ns(of_raster[0], max_effect_ns_per_triangle), ns(of_raster[1], max_ns_per_pixel)});
+    }
+    return prices;
+}
+
 double ratio(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile) {
     std::vector<double> values;
     for (const FrameSample& s : samples) {

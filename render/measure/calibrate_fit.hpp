@@ -65,6 +65,17 @@ struct WorkPair {
 /// finite.
 std::optional<float> dearer_factor_of(std::span<const WorkPair> pairs, double max);
 
+/// What an effect added to one item, at one size.
+struct PricePoint {
+    model::EffectMask effect = 0;
+    double triangles = 0, pixels = 0;     ///< of the item
+    double submit_us = 0, raster_us = 0;  ///< with it, more than without it
+};
+/// The price of each effect, in the order of their first points. The points of an effect differ in triangles and pixels. Least
+/// squares, where points of any size count alike. Never negative; noise below zero is nothing. Points that are not finite do
+/// not count.
+std::vector<model::EffectPrice> fit_prices(std::span<const PricePoint> points);
+
 /// One time for each frame, from several measurements of it.
 struct FrameTimes {
     std::vector<FrameSample> frames;  ///< sums as last drawn; actual_us: minimum of the rounds, times `slowdown`

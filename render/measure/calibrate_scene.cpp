@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "render/effects/effects.hpp"
 #include "render/model/cost.hpp"
 #include "rt/base/random.hpp"
 
@@ -227,10 +229,11 @@ Meshes make_meshes(Builder& builder) {
     return meshes;
 }
 
-/// Items of about `pixels` each over the view of Pose{}, at rising depth so that equal meshes are never sorted side by side.
-CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, std::span<const Index> materials, double pixels,
-                          model::Viewport viewport) {
-    const model::EffectMask effects = builder.model().materials[materials.front()].effects;
+/// Where and in how many places items of a cell stand: about `pixels` each over the view of Pose{}, at rising depth so that equal
+/// meshes are never sorted side by side. place(i, node) adds the forms of the node made last.
+template <class Place>
+void place_items(Builder& builder, const std::vector<Mesh>& meshes, model::EffectMask effects, double pixels,
+                 model::Viewport viewport, Place place) {
     const model::ViewScale scale = model::make_view_scale(Pose{}, viewport);
     const double f = static_cast<double>(scale.pixels_per_radian);
     const double angular = std::sqrt(pixels / std::numbers::pi) / f;  // radius over depth
@@ -239,8 +242,6 @@ CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, std
         guess.item(static_cast<float>(meshes[0].triangles), static_cast<float>(pixels), guess.grid_for(effects));
     const double each_us = static_cast<double>(cost.submit_us + cost.raster_us);
     const auto count = static_cast<std::size_t>(std::clamp(cell_us / each_us, 1.0, static_cast<double>(max_items)));
-    CalibrationCell cell;
-    cell.effects = effects;
     for (std::size_t i = 0; i < count; ++i) {
         const double depth = 20.0 * (1.0 + 0.002 * static_cast<double>(i));
         const double reach_x = std::max(0.0, static_cast<double>(scale.tan_half_x) - angular);
@@ -248,25 +249,61 @@ CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, std
         const double y = depth * builder.random().range(-reach_y, reach_y), x = depth * builder.random().range(-reach_x, reach_x);
         const dvec3 centre(x, y, -depth);
         const dvec3 radii(angular * depth);
-        const Index node = builder.node(centre, radii);
+        place(i, builder.node(centre, radii));
+    }
+}
+
+CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, std::span<const Index> materials, double pixels,
+                          model::Viewport viewport) {
+    CalibrationCell cell;
+    cell.effects = builder.model().materials[materials.front()].effects;
+    place_items(builder, meshes, cell.effects, pixels, viewport, [&](std::size_t i, Index node) {
         const Index rep = builder.rep(meshes[i % meshes.size()], materials[i % materials.size()]);
         cell.items.push_back({node, rep});
         cell.triangles += builder.model().reps[rep].triangles;
-    }
-    cell.triangles /= static_cast<double>(count);
+    });
+    cell.triangles /= static_cast<double>(cell.items.size());
     return cell;
 }
 
-void count_pixels(CalibrationScene& scene, model::Viewport viewport) {
-    const model::Model& model = scene.model;
-    const model::ViewScale scale = model::make_view_scale(Pose{}, viewport);
-    for (CalibrationCell& cell : scene.cells) {
-        for (const gl::DrawItem& item : cell.items) {
-            cell.pixels +=
-                static_cast<double>(scene.estimator.pixels(model, item.rep, model.nodes[item.node].box, dvec3(0.0), scale));
+/// For each effect with a price, spheres of many triangles and boxes of many pixels.
+void make_price_cells(Builder& builder, const Meshes& meshes, model::Viewport viewport, CalibrationScene& scene) {
+    constexpr std::size_t many_triangles = 5, few_triangles = 0;  // of triangle_levels
+    constexpr double few_pixels = 1024, many_pixels = 65536;
+    for (const effects::EffectModule& module : effects::all_effects()) {
+        if (module.priced_on == 0) continue;
+        const std::vector<Index> without = builder.materials(module.priced_on),
+                                 with = builder.materials(module.priced_on | module.bit);
+        for (const auto& [level, pixels] : {std::pair{many_triangles, few_pixels}, {few_triangles, many_pixels}}) {
+            PriceCell& cell = scene.prices.emplace_back();
+            cell.effect = module.bit;
+            place_items(builder, meshes[level], module.priced_on, pixels, viewport, [&](std::size_t i, Index node) {
+                const Mesh& mesh = meshes[level][i % meshes[level].size()];
+                cell.without.push_back({node, builder.rep(mesh, without[i % without.size()])});
+                cell.with.push_back({node, builder.rep(mesh, with[i % with.size()])});
+                cell.triangles += mesh.triangles;
+            });
+            cell.triangles /= static_cast<double>(cell.with.size());
         }
-        cell.pixels /= static_cast<double>(cell.items.size());
     }
+    // What they read; its bytes do not matter.
+    builder.model().sun_seen.resize(builder.model().vertices.size(), {{200, 100, 200, 100}});
+    builder.model().lamp_light.resize(builder.model().vertices.size(), {{90, 80, 70, 0}, {20, 20, 20, 0}});
+    builder.model().light.fog_visibility_m = 500;
+}
+
+double mean_pixels(const CalibrationScene& scene, std::span<const gl::DrawItem> items, const model::ViewScale& scale) {
+    const model::Model& model = scene.model;
+    double sum = 0;
+    for (const gl::DrawItem& item : items)
+        sum += static_cast<double>(scene.estimator.pixels(model, item.rep, model.nodes[item.node].box, dvec3(0.0), scale));
+    return sum / static_cast<double>(items.size());
+}
+
+void count_pixels(CalibrationScene& scene, model::Viewport viewport) {
+    const model::ViewScale scale = model::make_view_scale(Pose{}, viewport);
+    for (CalibrationCell& cell : scene.cells) cell.pixels = mean_pixels(scene, cell.items, scale);
+    for (PriceCell& cell : scene.prices) cell.pixels = mean_pixels(scene, cell.with, scale);
 }
 
 constexpr double town_side_m = 400;
@@ -334,6 +371,7 @@ CalibrationScene make_calibration_scene(model::Viewport viewport, bool quick, st
         }
     }
     make_town(builder, meshes, materials, scene);
+    make_price_cells(builder, meshes, viewport, scene);
     scene.model = std::move(builder.model());
     scene.estimator = model::PixelEstimator(scene.model);
     count_pixels(scene, viewport);

@@ -23,6 +23,13 @@ struct CalibrationCell {
     std::vector<gl::DrawItem> items;
 };
 
+/// The same items drawn in two ways: with an effect, and without it.
+struct PriceCell {
+    model::EffectMask effect = 0;
+    double triangles = 0, pixels = 0;  ///< of one item
+    std::vector<gl::DrawItem> without, with;
+};
+
 /// An object of the town: the same place at several levels of detail, coarse to fine.
 struct TownObject {
     model::Index node = 0;
@@ -36,7 +43,8 @@ struct CalibrationScene {
     model::Model model;
     model::PixelEstimator estimator;  ///< of the model
     std::vector<CalibrationCell> cells;
-    std::vector<TownObject> town;  ///< in blocks: neighbours in the list are neighbours in space
+    std::vector<PriceCell> prices;  ///< two an effect that has a price: many triangles, and many pixels
+    std::vector<TownObject> town;   ///< in blocks: neighbours in the list are neighbours in space
     Box town_box;
 };
 

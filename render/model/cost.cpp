@@ -61,8 +61,9 @@ ItemCost CostModel::item(float triangles, float pixels, const CostGrid& grid) co
 }
 
 const CostGrid& CostModel::grid_for(EffectMask effects) const {
+    // What light all of them share, normals above all, is the sun's. What each adds is its price.
     constexpr EffectMask baked = effect_openness | effect_shadow | effect_lamps;
-    if ((effects & baked) != 0) effects = (effects & ~baked) | effect_sun;  // about the same work
+    if ((effects & baked) != 0) effects = (effects & ~baked) | effect_sun;
     const CostGrid* best = &grids.front();
     int best_rank = -1000;
     for (const CostGrid& grid : grids) {
@@ -95,6 +96,10 @@ CostModel at_quality(CostModel costs, const Quality& quality) {
     for (CostGrid& grid : costs.grids) {
         const float factor = (grid.effects & effect_texture) != 0 ? by_samples * by_filter : by_samples;
         for (ItemCost& cell : grid.cells) cell.raster_us *= factor;
+    }
+    for (EffectPrice& price : costs.prices) {
+        price.raster_ns_per_triangle *= by_samples;
+        price.raster_ns_per_pixel *= by_samples;
     }
     costs.ns_per_pixel *= by_samples;
     costs.drawn_pass_ns_per_pixel += costs.sample_pass_ns_per_pixel * more;

@@ -34,6 +34,13 @@ struct CostGrid {
     std::vector<ItemCost> cells;                        ///< [t * np + p]
 };
 
+/// What an effect adds to an item of any state class: linear, so prices of several effects add up. An effect that a class's grid
+/// holds already is not added; it is taken off again where it is hidden.
+struct EffectPrice {
+    EffectMask effect = 0;  ///< one bit
+    float submit_ns_per_triangle = 0, raster_ns_per_triangle = 0, raster_ns_per_pixel = 0;
+};
+
 /// frame_us = fixed + sum_submit * S + sum_raster * R + max(S, R) * M, with S, R the sums over items.
 struct FrameCombine {
     float fixed_us = 500;
@@ -55,7 +62,8 @@ using BlurLoss = std::array<float, resolution_steps.size()>;
 
 /// The cost table of a machine, fitted to a model of a whole frame.
 struct CostModel {
-    std::vector<CostGrid> grids;  ///< at least one. Found by exact mask, else by most common bits among the supersets
+    std::vector<CostGrid> grids;      ///< at least one. Found by exact mask, else by most common bits among the supersets
+    std::vector<EffectPrice> prices;  ///< one an effect at most. Empty: an engine takes effects::usual_prices()
     FrameCombine combine;
     /// Raster time of every rasterised pixel beyond the cells, whatever its state class. 0: the cells alone; else a fit measured
     /// it.
@@ -77,7 +85,8 @@ struct CostModel {
     bool timer_query_honest = false;
     bool calibrated = false;  ///< false: built-in defaults
     /// False: the constants above, which no file holds.
-    bool enlarge_measured = false, blur_measured = false, samples_measured = false, trilinear_measured = false;
+    bool enlarge_measured = false, blur_measured = false, samples_measured = false, trilinear_measured = false,
+         prices_measured = false;
 
     /// Interpolated. Arguments below 1 count as 1; beyond the grid the cost is extrapolated linearly. Never negative. A NaN
     /// argument gives the largest cell.

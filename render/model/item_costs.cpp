@@ -34,6 +34,79 @@ ItemCosts::ItemCosts(const Model& model, const CostModel& costs, PixelEstimator 
         classes_of_.push_back(entry->second);
     }
     classes_ = std::vector<Class>(found.begin(), found.end());  // what stays, locked, is as large as it must be
+    price_effects();
+}
+
+void ItemCosts::Increment::add(const EffectPrice& price, float triangles, float share) {
+    submit_us += 1e-3F * price.submit_ns_per_triangle * triangles;
+    raster_us += 1e-3F * price.raster_ns_per_triangle * triangles;
+    raster_us_per_pixel += 1e-3F * price.raster_ns_per_pixel * share;
+}
+
+void ItemCosts::price_effects() {
+    EffectMask of_model = 0;
+    for (const Material& material : model_.materials) of_model |= material.effects;
+    for (const Representation& rep : model_.reps) of_model |= rep.effects;
+    for (const EffectPrice& price : costs_.prices) {
+        if ((price.effect & of_model) == 0) continue;
+        prices_.push_back(price);
+        priced_ |= price.effect;
+    }
+    if (prices_.empty()) return;
+    std::map<std::pair<Index, Index>, std::uint32_t> known;  // by their parts
+    priced_as_.reserve(model_.reps.size());
+    for (const Representation& rep : model_.reps) {
+        const auto form = static_cast<std::uint32_t>(beyond_grids_.size());
+        if (rep.part_count > 0) {
+            const auto [entry, fresh] = known.try_emplace({rep.first_part, rep.part_count}, form);
+            priced_as_.push_back(entry->second);
+            if (!fresh) continue;
+        } else {
+            priced_as_.push_back(form);
+        }
+        of_effects_.resize(of_effects_.size() + prices_.size());
+        price_form(rep, std::span(of_effects_).last(prices_.size()), beyond_grids_.emplace_back());
+    }
+}
+
+void ItemCosts::price_form(const Representation& rep, std::span<Increment> of_effects, Increment& beyond_grids) const {
+    if (rep.part_count == 0)
+        return price_part(rep.effects, costs_.grid_for(rep.effects), static_cast<float>(rep.triangles), 1, of_effects,
+                          beyond_grids);
+    std::vector<double> areas;
+    double total = 0;
+    for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+        double& area = areas.emplace_back(0);
+        for_triangles(model_, p, [&](const Material&, const vec3& a, const vec3& b, const vec3& c) {
+            area += static_cast<double>(0.5F * glm::length(glm::cross(b - a, c - a)));
+        });
+        total += area;
+    }
+    const bool measurable = total > 0 && std::isfinite(total);
+    for (std::uint32_t i = 0; i < rep.part_count; ++i) {
+        const Part& part = model_.parts[rep.first_part + i];
+        const double share = measurable ? areas[i] / total : 1.0 / rep.part_count;
+        price_part(model_.materials[part.material].effects, costs_.grids[grid_of_part_[rep.first_part + i]],
+                   static_cast<float>(part.index_count / 3), static_cast<float>(share), of_effects, beyond_grids);
+    }
+}
+
+void ItemCosts::price_part(EffectMask effects, const CostGrid& grid, float triangles, float share,
+                           std::span<Increment> of_effects, Increment& beyond_grids) const {
+    for (std::size_t i = 0; i < prices_.size(); ++i) {
+        if ((prices_[i].effect & effects) == 0) continue;
+        of_effects[i].add(prices_[i], triangles, share);
+        if ((prices_[i].effect & grid.effects) == 0) beyond_grids.add(prices_[i], triangles, share);
+    }
+}
+
+ItemCost ItemCosts::of_effects(Index r, float pixels, EffectMask effects) const {
+    ItemCost sum;
+    if ((effects & priced_) == 0) return sum;
+    const std::size_t first = priced_as_[r] * prices_.size();
+    for (std::size_t i = 0; i < prices_.size(); ++i)
+        if ((prices_[i].effect & effects) != 0) sum += of_effects_[first + i].at(std::min(pixels, max_pixels));
+    return sum;
 }
 
 ItemCosts::Classes ItemCosts::gather(const Representation& rep, std::vector<Class>& found) const {
@@ -61,10 +134,15 @@ ItemCosts::Classes ItemCosts::gather(const Representation& rep, std::vector<Clas
     return classes;
 }
 
-ItemCost ItemCosts::of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& all_pixels) const {
+ItemCost ItemCosts::of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& all_pixels,
+                       EffectMask hidden) const {
     ItemCost cost = by_cells(r, node_box, eye, scale, all_pixels);
     cost.raster_us += 1e-3F * costs_.ns_per_pixel * std::min(all_pixels, max_pixels);
-    return cost;
+    if (prices_.empty()) return cost;
+    cost += beyond_grids_[priced_as_[r]].at(std::min(all_pixels, max_pixels));
+    if ((hidden & priced_) == 0) return cost;
+    const ItemCost less = of_effects(r, all_pixels, hidden);
+    return {std::max(0.0F, cost.submit_us - less.submit_us), std::max(0.0F, cost.raster_us - less.raster_us)};
 }
 
 ItemCost ItemCosts::by_cells(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& all_pixels) const {

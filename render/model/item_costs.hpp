@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "render/model/cost.hpp"
@@ -27,8 +28,14 @@ public:
         float pixels = 0;
         return of(r, node_box, eye, scale, pixels);
     }
-    /// The same, with the pixels that it is predicted from: all that are rasterised, overdraw included.
-    [[nodiscard]] ItemCost of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& pixels) const;
+    /// The same, with the pixels that it is predicted from: all that are rasterised, overdraw included. `hidden`: effects that
+    /// are not drawn.
+    [[nodiscard]] ItemCost of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& pixels,
+                              EffectMask hidden = 0) const;
+    /// What these effects add to the representation where it covers so many pixels: the sum of their prices.
+    [[nodiscard]] ItemCost of_effects(Index r, float pixels, EffectMask effects) const;
+    /// The effects that have a price, and that some part of the model has.
+    [[nodiscard]] EffectMask priced() const { return priced_; }
     [[nodiscard]] const PixelEstimator& estimator() const { return estimator_; }
 
 private:
@@ -45,12 +52,28 @@ private:
     };
     Classes gather(const Representation& rep, std::vector<Class>& found) const;
 
+    /// A price times the triangles of a representation, and times the share of its area.
+    struct Increment {
+        float submit_us = 0, raster_us = 0, raster_us_per_pixel = 0;
+        [[nodiscard]] ItemCost at(float pixels) const { return {submit_us, raster_us + raster_us_per_pixel * pixels}; }
+        void add(const EffectPrice& price, float triangles, float share);
+    };
+    void price_effects();
+    void price_form(const Representation& rep, std::span<Increment> of_effects, Increment& beyond_grids) const;
+    void price_part(EffectMask effects, const CostGrid& grid, float triangles, float share, std::span<Increment> of_effects,
+                    Increment& beyond_grids) const;
+
     const Model& model_;
     const CostModel& costs_;
     PixelEstimator estimator_;
     std::vector<std::uint32_t> grid_of_part_;
     std::vector<Class> classes_;
     std::vector<Classes> classes_of_;  ///< [representation]; representations with the same parts share an entry
+    EffectMask priced_ = 0;
+    std::vector<EffectPrice> prices_;       ///< of priced_; empty: nothing below is filled in
+    std::vector<Increment> beyond_grids_;   ///< [form]: of all effects that its grids do not hold
+    std::vector<Increment> of_effects_;     ///< [form * prices + price]
+    std::vector<std::uint32_t> priced_as_;  ///< [representation]: its form above; the same parts share one
 };
 
 }  // namespace surefoot::model

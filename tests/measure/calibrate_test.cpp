@@ -302,6 +302,34 @@ TEST(TimerQuery, is_honest_within_a_fifth_of_the_wall) {
     EXPECT_FALSE(measure::judge_timer(true, 0, 0).honest);
 }
 
+TEST(FitPrices, recovers_prices_and_never_pays_for_an_effect) {
+    using measure::PricePoint;
+    const double infinite = std::numeric_limits<double>::infinity();
+    const auto prices = measure::fit_prices(std::vector<PricePoint>{
+        {model::effect_sun, 4000, 1000, 8, 4000 * 0.001 + 1000 * 0.002},
+        {model::effect_fog, 4000, 1000, -3, -5},
+        {model::effect_sun, 12, 60'000, 12 * 0.002, 12 * 0.001 + 60'000 * 0.002},
+        {model::effect_fog, 12, 60'000, 0.001, 60},
+        {model::effect_lamps, 4000, 1000, infinite, 1},
+        {model::effect_lamps, 12, 60'000, 0.012, infinite},
+        {model::effect_shadow, 4000, 1000, 4, 4},
+        {model::effect_shadow, 12, 60'000, 0, -2},
+    });
+    ASSERT_EQ(prices.size(), 4U);
+    EXPECT_EQ(prices[0].effect, model::effect_sun);
+    EXPECT_NEAR(prices[0].submit_ns_per_triangle, 2, 1e-3);
+    EXPECT_NEAR(prices[0].raster_ns_per_triangle, 1, 1e-3);
+    EXPECT_NEAR(prices[0].raster_ns_per_pixel, 2, 1e-3);
+    EXPECT_EQ(prices[1].effect, model::effect_fog);
+    EXPECT_EQ(prices[1].submit_ns_per_triangle, 0) << "noise below zero";
+    EXPECT_EQ(prices[1].raster_ns_per_triangle, 0);
+    EXPECT_NEAR(prices[1].raster_ns_per_pixel, 1, 0.05) << "the point of many pixels counts most";
+    EXPECT_EQ(prices[2].submit_ns_per_triangle, 0) << "no point is a number";
+    EXPECT_NEAR(prices[3].raster_ns_per_triangle, 1, 0.05);
+    EXPECT_EQ(prices[3].raster_ns_per_pixel, 0) << "of two, the one that would be paid for goes";
+    EXPECT_TRUE(measure::fit_prices({}).empty());
+}
+
 TEST(Calibrate, measures_a_table_that_predicts_more_for_more) {
     measure::CalibrateOptions options;
     options.quick = true;
@@ -328,6 +356,14 @@ TEST(Calibrate, measures_a_table_that_predicts_more_for_more) {
     EXPECT_TRUE(c->costs.trilinear_measured);
     EXPECT_GE(c->costs.trilinear_factor, 1);
     EXPECT_TRUE(std::isfinite(c->frame_error_p99));
+    EXPECT_TRUE(c->costs.prices_measured);
+    ASSERT_EQ(c->costs.prices.size(), effects::usual_prices().size());
+    for (std::size_t i = 0; i < c->costs.prices.size(); ++i) {
+        const model::EffectPrice& price = c->costs.prices[i];
+        EXPECT_EQ(price.effect, effects::usual_prices()[i].effect);
+        EXPECT_LT(price.submit_ns_per_triangle, 1000);
+        EXPECT_LT(price.raster_ns_per_pixel, 20);
+    }
     const auto& grid = c->costs.grid_for(0);
     const auto less = c->costs.item(10, 100, grid);
     const auto more = c->costs.item(10000, 100000, grid);

@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "render/measure/calibrate.hpp"
 #include "rt/base/file.hpp"
@@ -106,6 +108,42 @@ TEST_F(CostFile, holds_the_price_of_a_pixel_where_a_fit_found_one) {
     ASSERT_TRUE(read.ok()) << read.error().text();
     EXPECT_EQ(read->ns_per_pixel, costs_.ns_per_pixel);
     EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_));
+}
+
+TEST_F(CostFile, holds_the_prices_of_effects_where_they_were_measured) {
+    EXPECT_EQ(read_text(file_).value().find("price"), std::string::npos);
+    EXPECT_TRUE(measure::read_costs(file_, "")->prices.empty()) << "a table of before has none";
+    const auto before = measure::hash_of(costs_);
+    costs_.prices = {{model::effect_shadow, 1.5F, 0.25F, 0.125F}, {model::effect_fog, 0, 0, 0.333333343F}};
+    EXPECT_EQ(measure::hash_of(costs_), before) << "built-in figures are not the machine's";
+    costs_.prices_measured = true;
+    EXPECT_NE(measure::hash_of(costs_), before);
+    ASSERT_TRUE(measure::write_costs(file_, costs_).ok());
+    const auto read = measure::read_costs(file_, costs_.machine);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_TRUE(read->prices_measured);
+    ASSERT_EQ(read->prices.size(), 2U);
+    EXPECT_EQ(read->prices[0].effect, model::effect_shadow);
+    EXPECT_EQ(read->prices[0].submit_ns_per_triangle, 1.5F);
+    EXPECT_EQ(read->prices[0].raster_ns_per_triangle, 0.25F);
+    EXPECT_EQ(read->prices[1].raster_ns_per_pixel, 0.333333343F);
+    EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_));
+}
+
+TEST_F(CostFile, with_a_wrong_price_is_refused_by_its_key) {
+    costs_.prices_measured = true;
+    const auto wrong = [&](std::vector<model::EffectPrice> prices) {
+        costs_.prices = std::move(prices);
+        EXPECT_TRUE(measure::write_costs(file_, costs_).ok());
+        const auto read = measure::read_costs(file_, "");
+        return read ? std::string("ok") : read.error().what;
+    };
+    EXPECT_EQ(wrong({{model::effect_fog, 1, 1, 1}}), "ok");
+    EXPECT_NE(wrong({{model::effect_fog | model::effect_sun, 1, 1, 1}}).find("'effect'"), std::string::npos);
+    EXPECT_NE(wrong({{0, 1, 1, 1}}).find("'effect'"), std::string::npos);
+    EXPECT_NE(wrong({{model::effect_fog, 1, 1, 1}, {model::effect_fog, 1, 1, 1}}).find("'effect'"), std::string::npos);
+    EXPECT_NE(wrong({{model::effect_fog, -1, 1, 1}}).find("'submit_ns_per_triangle'"), std::string::npos);
+    EXPECT_NE(wrong({{model::effect_fog, 1, 1, 1e9F}}).find("'raster_ns_per_pixel'"), std::string::npos);
 }
 
 TEST_F(CostFile, without_blur_and_enlarging_keeps_the_constants_and_its_hash) {

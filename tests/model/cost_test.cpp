@@ -79,6 +79,16 @@ TEST(Cost, OfClearingAndResolvingSamplesIsOfTheSizeThatIsDrawn) {
     EXPECT_FLOAT_EQ(smooth.rest_pass_us(picture), costs.rest_pass_us(picture) + 3000) << "a picture at rest is whole";
 }
 
+TEST(Cost, OfAnEffectGrowsWithTheSamplesAsThatOfItems) {
+    CostModel costs = default_costs();
+    costs.sample_share = 0.5F;
+    costs.prices = {{effect_lamps, 3, 4, 5}};
+    const EffectPrice price = at_quality(costs, {4, rt::TextureFilter::bilinear, rt::TextureFilter::bilinear}).prices.at(0);
+    EXPECT_FLOAT_EQ(price.submit_ns_per_triangle, 3);
+    EXPECT_FLOAT_EQ(price.raster_ns_per_triangle, 10);
+    EXPECT_FLOAT_EQ(price.raster_ns_per_pixel, 12.5F);
+}
+
 TEST(Cost, OfSamplesAndAFilterChangesRasterTimeAndThePasses) {
     using rt::TextureFilter;
     CostModel costs = default_costs();

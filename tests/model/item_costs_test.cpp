@@ -162,5 +162,71 @@ TEST(ItemCosts, OfEveryPixelAreAddedWhateverItsClass) {
     EXPECT_FLOAT_EQ(smooth.ns_per_pixel, 2 * (1 + 3 * with_pixels.sample_share)) << "samples make each pixel dearer";
 }
 
+/// Prices of effects are in ns: the wall has shadows, the poster shadows and lamps. No grid holds either.
+CostModel with_prices() {
+    CostModel costs = priced();
+    costs.prices = {{effect_shadow, 100, 50, 2}, {effect_lamps, 10, 0, 0}, {effect_fog, 1, 1, 1}, {effect_texture, 500, 0, 0.5F}};
+    return costs;
+}
+
+Model with_light() {
+    Model m = wall_and_poster();
+    m.materials[0].effects |= effect_shadow;
+    m.materials[1].effects |= effect_shadow | effect_lamps;
+    return m;
+}
+
+TEST(ItemCosts, PricesOfEffectsAddUpOverPartsAndLeaveWithThem) {
+    const Model m = with_light();
+    const CostModel prices = with_prices(), none = priced();
+    const ItemCosts costs(m, prices);
+    EXPECT_EQ(costs.priced(), effect_shadow | effect_lamps | effect_texture) << "fog is nowhere";
+    const Pose far = at({0, 0, 60});
+    const auto of = [&](EffectMask hidden, float& pixels) {
+        return costs.of(0, m.nodes[0].box, far.position, make_view_scale(far, picture), pixels, hidden);
+    };
+    float pixels = 0;
+    const ItemCost bare = ItemCosts(m, none).of(0, m.nodes[0].box, far.position, make_view_scale(far, picture)),
+                   all = of(0, pixels);
+    ASSERT_GT(pixels, 1000.0F);
+    // Four triangles with shadows, two with lamps. The grids hold the textures.
+    EXPECT_NEAR(all.submit_us, bare.submit_us + 0.4F + 0.02F, 1e-5);
+    EXPECT_NEAR(all.raster_us, bare.raster_us + 0.2F + 0.002F * pixels, 1e-4F * all.raster_us);
+    EXPECT_NEAR(of(effect_lamps, pixels).submit_us, all.submit_us - 0.02F, 1e-5);
+    EXPECT_NEAR(of(effect_shadow, pixels).submit_us, all.submit_us - 0.4F, 1e-5);
+    EXPECT_NEAR(of(effect_shadow, pixels).raster_us, bare.raster_us, 1e-4F * all.raster_us);
+    EXPECT_EQ(of(effect_fog | effect_sun, pixels).submit_us, all.submit_us) << "it has none of them";
+    EXPECT_NEAR(of(effect_texture, pixels).submit_us, all.submit_us - 4 * 0.5F, 1e-5) << "what a grid holds goes as well";
+    EXPECT_EQ(of(~EffectMask{0}, pixels).submit_us, std::max(0.0F, all.submit_us - 0.42F - 2.0F));
+    const ItemCost added = costs.of_effects(0, pixels, effect_shadow | effect_lamps);
+    EXPECT_NEAR(added.submit_us, all.submit_us - bare.submit_us, 1e-5);
+    EXPECT_NEAR(added.raster_us, all.raster_us - bare.raster_us, 1e-4F * all.raster_us);
+    const ItemCost of_lamps = costs.of_effects(0, pixels, effect_lamps);
+    EXPECT_EQ(of_lamps.raster_us, 0.0F);
+    EXPECT_FLOAT_EQ(of_lamps.submit_us, 0.02F);
+}
+
+TEST(ItemCosts, WithoutAnEffectThatHasAPriceAreToTheBitAsWithoutPrices) {
+    const Model m = wall_and_poster();
+    CostModel prices = with_prices();
+    prices.prices.pop_back();  // of textures
+    const CostModel none = priced();
+    for (const Pose& pose : {at({0, 0, 60}), at({2, 0, 1})}) {
+        const ItemCost a = cost(ItemCosts(m, prices), m, pose), b = cost(ItemCosts(m, none), m, pose);
+        EXPECT_EQ(a.submit_us, b.submit_us);
+        EXPECT_EQ(a.raster_us, b.raster_us);
+    }
+}
+
+TEST(ItemCosts, OfARepresentationWithoutPartsHaveThePricesOfItsEffects) {
+    Model m = wall_and_poster();
+    m.reps[0].part_count = 0;
+    m.reps[0].triangles = 100;
+    m.reps[0].effects = dear | effect_lamps;
+    const CostModel prices = with_prices(), none = priced();
+    const Pose far = at({0, 0, 60});
+    EXPECT_NEAR(cost(ItemCosts(m, prices), m, far).submit_us, cost(ItemCosts(m, none), m, far).submit_us + 1.0F, 1e-4);
+}
+
 }  // namespace
 }  // namespace surefoot::model

@@ -1,0 +1,89 @@
+// Prices of effects against what they take: another scene than that of the calibration, which has all effects at once.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "render/gl/device.hpp"
+#include "render/measure/calibrate.hpp"
+#include "render/measure/calibrate_run.hpp"
+#include "render/measure/calibrate_scene.hpp"
+#include "render/model/item_costs.hpp"
+#include "rt/base/statistics.hpp"
+
+namespace surefoot::measure {
+namespace {
+
+constexpr model::Viewport picture{320, 180};
+
+/// Its lit textured items have all effects with a price. Sizes lie between those that were measured.
+CalibrationScene with_all_effects() {
+    CalibrationScene scene = make_calibration_scene(picture, true, 77);
+    for (model::Material& material : scene.model.materials)
+        if (material.effects == (model::effect_texture | model::effect_sun))
+            for (const model::EffectPrice& price : effects::usual_prices()) material.effects |= price.effect;
+    return scene;
+}
+
+/// Median time that the hidden effect takes of a frame: busiest thread and rasteriser together, us.
+double measured_us(gl::Device& device, std::span<const gl::DrawItem> items, model::EffectMask effect) {
+    RasteriserClocks clocks;
+    device.draws.plays();
+    const auto draw = [&](bool hide) {
+        device.draws.plays();
+        device.hide_effects(hide ? effect : 0);
+        run_frame(device, clocks, Pose{}, items, items.size());
+        const FrameTiming timing = run_frame(device, clocks, Pose{}, items, items.size());
+        return timing.submit_us + timing.raster_us;
+    };
+    std::vector<double> more;
+    for (int i = 0; i < 15; ++i) {
+        const bool first = i % 2 == 0;
+        const double one = draw(first), other = draw(!first);
+        more.push_back(first ? other - one : one - other);
+    }
+    return median_of(more);
+}
+
+TEST(EffectPrices, PredictWhatEachAddsToASceneWithAllOfThem) {
+    CalibrateOptions options;
+    options.quick = true;
+    options.device.viewport = picture;
+    if (const auto probe = gl::open_device(options.device); !probe) GTEST_SKIP() << probe.error().text();
+    const auto table = calibrate(options, {});
+    ASSERT_TRUE(table.ok()) << table.error().text();
+    const CalibrationScene scene = with_all_effects();
+    const model::ItemCosts costs(scene.model, table->costs);
+    gl::DeviceOptions how = options.device;
+    how.switches = {model::effect_openness, model::effect_shadow, model::effect_lamps, model::effect_fog};
+    auto device = gl::open_device(how);
+    ASSERT_TRUE(device.ok());
+    (*device)->draws.plays();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    RasteriserClocks clocks;
+    for (const model::EffectMask effect : how.switches) {
+        double predicted = 0, measured = 0, all = 0;
+        for (const CalibrationCell& cell : scene.cells) {
+            if (cell.effects != (model::effect_texture | model::effect_sun) || cell.triangles < 50 || cell.pixels < 500) continue;
+            for (const gl::DrawItem& item : cell.items) {
+                float pixels = 0;
+                costs.of(item.rep, scene.model.nodes[item.node].box, dvec3(0), model::make_view_scale(Pose{}, picture), pixels);
+                const model::ItemCost added = costs.of_effects(item.rep, pixels, effect);
+                predicted += static_cast<double>(added.submit_us + added.raster_us);
+            }
+            measured += measured_us(**device, cell.items, effect);
+            (*device)->draws.plays();
+            (*device)->hide_effects(0);
+            const FrameTiming whole = run_frame(**device, clocks, Pose{}, cell.items, cell.items.size());
+            all += whole.submit_us + whole.raster_us;
+        }
+        std::printf("%s: predicted %.0f us, measured %.0f us of %.0f us\n", effects::effects_text(effect).c_str(), predicted,
+                    measured, all);
+        EXPECT_NEAR(predicted, measured, 0.5 * std::max(predicted, measured) + 0.03 * all) << effects::effects_text(effect);
+        EXPECT_LT(predicted, 0.5 * all);
+    }
+}
+
+}  // namespace
+}  // namespace surefoot::measure
