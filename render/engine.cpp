@@ -23,6 +23,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->draws.plays();  // nobody else has it yet
     impl->model = std::move(model);
     impl->costs = costs;
+    if (impl->costs.prices.empty()) impl->costs.prices = effects::usual_prices();
     impl->options = options;
     auto selector = select::selector_named(options.selector);
     if (!selector) return selector.error();
@@ -41,6 +42,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->costs = model::at_quality(std::move(impl->costs), gl::quality_of(*impl->device, costs));
     auto loaded = impl->device->load(impl->model, effects::assemble_program);
     if (!loaded) return loaded.error();
+    if (options.buys_effects) impl->reserve_effects();
     decltype(impl->model.texels)().swap(impl->model.texels);  // the device has its own
     const auto candidates =
         static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_candidates, impl->model.nodes.size()));
@@ -79,6 +81,8 @@ void Engine::Impl::use(const select::SelectorEntry& entry) {
     by_budget = entry.goes_by == select::GoesBy::budget;
     keeps_target = entry.keeps_target;
     by_value = by_budget && entry.by_value && !(options.max_error_rad > 0);
+    draws.plays();  // nothing is drawn or prepared meanwhile
+    price_without();
     const bool full_depth = full_depth_always || entry.goes_by == select::GoesBy::nothing;
     if (preparer && full_depth == options.prepare.full_depth) return;
     options.prepare.full_depth = full_depth;
@@ -119,6 +123,8 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     out.coarse_factor = 1.0F / apart;
     out.from_s = hints.time_s;
     out.to_s = hints.time_s + hints.span_s;
+    out.without = e.without.load(std::memory_order_relaxed);
+    if (e.worth.any()) e.preparer->set_effect_losses(e.worth.at(e.light_hour.load(std::memory_order_relaxed)));
     e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out);
     out.full_filter_us = e.filter_costs.any() ? e.filter_costs.full_us(out) : 0.0F;
     if (!chosen || !(hints.planned_us[0] > 0.0) || e.options.prepare.full_depth) return;
@@ -223,26 +229,13 @@ void Engine::Impl::take_filter() {
         filter_us = 0;
         return;
     }
-    const std::vector<prepare::Choice>& choices = prepared->choices;
-    const auto sum_of = [&](std::span<const select::CutItem> items) {
-        model::ItemCost sum;
-        for (const select::CutItem& item : items) sum += filter_costs.with(item.rep, choices[item.choice].cost);
-        return sum;
-    };
-    const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
-    for (select::Slice& slice : plan.slices) {
-        slice.cost = sum_of(order.subspan(slice.first_item, slice.item_count));
-        slice.stand_in_cost = sum_of(stand_ins.subspan(slice.first_stand_in, slice.stand_in_count));
-    }
+    price_slices();
 }
 
 bool Engine::bought(select::ItemKind kind, std::uint32_t what) const {
     const Impl& e = *impl_;
     e.draws.plays();
-    const std::span<const select::Item> list = e.offered.offered();
-    for (std::size_t i = 0; i < list.size(); ++i)
-        if (list[i].name() == select::ItemName{kind, what}) return !e.use_last && e.offers_used && e.cut.bought.has(i);
-    return false;
+    return !e.use_last && e.offers_used && e.was_bought({kind, what});
 }
 
 const select::ItemList& Engine::offered() const {
@@ -267,6 +260,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.correction = correction;
     e.begin_offers();
     e.prepay_resolution(prepared);
+    e.offer_effects(prepared, budget_us / std::max(1e-3, correction.factor));
     const select::SelectInput input = e.input_of(prepared, budget_us, correction, target_error_rad);
     e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
@@ -277,6 +271,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.last_frame_us = 0;
     e.offers_used = true;
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
+    e.take_effects(prepared);
     e.take_filter();
     return e.cut;
 }
@@ -292,13 +287,15 @@ void Engine::hide_effects(model::EffectMask hidden) {
     if (hidden == e.hidden) return;
     e.device->draws.plays();
     e.hidden = hidden;
+    e.price_without();
     e.device->hide_effects(hidden);
     e.watch.forget();
     e.rest_picture.leave();
 }
 
-void Engine::set_light(const model::Daylight& light) {
+void Engine::set_light(const model::Daylight& light, float hour) {
     Impl& e = *impl_;
+    e.light_hour.store(hour, std::memory_order_relaxed);
     e.draws.plays();
     e.device->draws.plays();
     e.device->set_light(light);
@@ -318,6 +315,7 @@ void Engine::set_time(double time_s) {
 void Engine::select_last() {
     impl_->draws.plays();
     impl_->use_last = true;
+    for (EffectSale& sale : impl_->lever.sales) sale.fell = false;
     impl_->dwell.answer(false);
 }
 
@@ -328,6 +326,7 @@ void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> ite
     impl_->watch.forget();  // another picture is shown
     impl_->rest_picture.leave();
     device.set_filter(filter == rt::TextureFilter::automatic ? impl_->best_filter : filter);
+    device.hide_effects(impl_->hidden);
     device.begin_frame(pose, resolution);
     constexpr std::size_t chunk = 4096;  // below the device's max_items, and bounded work a slice
     for (std::size_t at = 0; at < items.size(); at += chunk) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -38,7 +39,10 @@ struct EngineOptions {
     double rest_after_ms = 0;
     double max_error_rad = 0;  ///< SelectInput::max_error_rad; refused for selectors that do not guarantee it
     select::BenefitModel benefit = select::BenefitModel::surefoot;  ///< of the 1994 selectors
-    bool in_frame_check = true;  ///< checks slices against the time left; off only for comparison
+    /// Groups of DeviceOptions::switches are items: a frame leaves out those whose value per us is less than that of forms.
+    bool buys_effects = false;
+    std::vector<double> effect_hours;  ///< of the day, rising, for which their worth is found; empty: the model's own light
+    bool in_frame_check = true;        ///< checks slices against the time left; off only for comparison
 };
 
 /// Time limit of one frame, and the clock for its checks.
@@ -66,6 +70,14 @@ struct PrepareHints {
     std::array<double, model::resolution_steps.size()> planned_us{};
     double form_ratio = 1;          ///< how much more expensive full detail is against coarse forms than predicted
     double time_s = 0, span_s = 0;  ///< of what moves: the set is for pictures from this time on, and no later than the span
+};
+
+/// A group of effects in a selection.
+struct EffectSale {
+    model::EffectMask group = 0;  ///< one of DeviceOptions::switches
+    float rate = 0;               ///< value per us; of a dropped one, at which it fell; 0: it is not for sale
+    bool dropped = false;         ///< it would show something, and is left out
+    bool fell = false;            ///< by this selection
 };
 
 /// Results of a submission. Times in us from the call.
@@ -130,13 +142,15 @@ public:
     Result<void> set_selector(std::string_view name);
 
     /// Leaves groups of effects out of the next pictures (gl::DeviceOptions::switches), or the model's own light gives way to
-    /// another. Between pictures, on the thread that draws. A change lets a picture at rest begin anew. Costs are predicted as
-    /// with all effects.
+    /// another. Between pictures, on the thread that draws. A change lets a picture at rest begin anew. Sets that are prepared
+    /// from then on have the prices of what is left. `hour`: of the light, where EngineOptions::effect_hours are given.
     void hide_effects(model::EffectMask hidden);
-    void set_light(const model::Daylight& light);
+    void set_light(const model::Daylight& light, float hour = std::numeric_limits<float>::quiet_NaN());
     /// The time of the next pictures: where what moves is drawn. As hide_effects() else, but a picture at rest goes on: it only
     /// begins where nothing in view moves.
     void set_time(double time_s);
+    /// By DeviceOptions::switches: what the last select() did with them. Empty where effects are not bought.
+    [[nodiscard]] std::span<const EffectSale> effect_sales() const;
 
     /// Offers something that the next select() may buy beside forms. False: refused, and counted in its cut.
     bool offer(const select::Item& item);

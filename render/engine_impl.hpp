@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "render/effect_lever.hpp"
 #include "render/engine.hpp"
 #include "render/filter_lever.hpp"
 #include "render/floor_watch.hpp"
@@ -61,8 +64,12 @@ struct Engine::Impl {
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
-    model::EffectMask hidden GUARDED_BY(draws) = 0;
-    double promised_rad GUARDED_BY(draws) = 0;  ///< error that the last cut was to keep; 0: none
+    model::EffectMask hidden GUARDED_BY(draws) = 0;  ///< by switches
+    EffectLever lever GUARDED_BY(draws);
+    EffectWorth worth;                           ///< constant after open(); empty where no effects are bought
+    std::atomic<model::EffectMask> without = 0;  ///< PreparedFrame::without of the next sets
+    std::atomic<float> light_hour{std::numeric_limits<float>::quiet_NaN()};  ///< of set_light()
+    double promised_rad GUARDED_BY(draws) = 0;                               ///< error that the last cut was to keep; 0: none
     /// How long the frame before took; on a clock that does not run within frames, as predicted. 0: it drew no cut.
     double last_frame_us GUARDED_BY(draws) = 0;
     SubmitReport last_report GUARDED_BY(draws);  ///< of the last frame that drew a cut
@@ -96,13 +103,29 @@ struct Engine::Impl {
     [[nodiscard]] rt::Guarantee guarantee_of(const SubmitReport& report) const REQUIRES(draws);
     void begin_offers() REQUIRES(draws);
     void take_filter() REQUIRES(draws);
-    [[nodiscard]] model::ItemCost drawn_cost(model::Index rep, const model::ItemCost& cost) const REQUIRES(draws) {
-        return filtered && !use_last ? filter_costs.with(rep, cost) : cost;
+    void reserve_effects() REQUIRES(draws);
+    void price_without() REQUIRES(draws);
+    void price_groups(const prepare::PreparedFrame& set, double room_us) REQUIRES(draws);
+    void offer_effects(const prepare::PreparedFrame& set, double room_us) REQUIRES(draws);
+    void take_effects(const prepare::PreparedFrame& set) REQUIRES(draws);
+    void learn_effects() REQUIRES(draws);
+    void price_slices() REQUIRES(draws);
+    /// Effects that a cut's pictures are drawn without.
+    [[nodiscard]] model::EffectMask drawn_without() const REQUIRES(draws) {
+        return gl::left_out(options.device.switches, hidden | lever.left_out);
+    }
+    [[nodiscard]] bool was_bought(const select::ItemName& name) const REQUIRES(draws);
+    [[nodiscard]] model::ItemCost effects_of(model::Index rep, float surface_px, model::EffectMask effects) const REQUIRES(draws);
+    /// What the choice costs as it is drawn: with the second mip level and with the effects that were bought.
+    [[nodiscard]] model::ItemCost drawn_cost(const prepare::Choice& choice) const REQUIRES(draws) {
+        model::ItemCost cost = choice.cost;
+        if (lever.shown != 0) cost += effects_of(choice.rep, choice.surface_px, lever.shown);
+        return filtered && !use_last ? filter_costs.with(choice.rep, cost) : cost;
     }
     [[nodiscard]] select::FrameProfile& profile() REQUIRES(draws) { return profiles[model::resolution_step(drawn_resolution)]; }
     /// Of what was bought, the time that is spent beside the draws.
     [[nodiscard]] double beside_us() const REQUIRES(draws) {
-        return use_last ? 0.0 : cut.bought.cost_us - (filtered ? static_cast<double>(filter_us) : 0.0);
+        return use_last ? 0.0 : cut.bought.cost_us - (filtered ? static_cast<double>(filter_us) : 0.0) - lever.spent_us;
     }
     void prepay_resolution(const prepare::PreparedFrame& set) REQUIRES(draws);
     void report_items(SubmitReport& report) const REQUIRES(draws);

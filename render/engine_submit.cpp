@@ -64,7 +64,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
         const bool finer = candidate.choice_count > 1 || candidate.child_count > 0;
         const bool full = model::is_full_detail(model.nodes[item.node], item.rep, model.reps[item.rep].error_m);
         floor.add(drawn.back(), candidate.pixels, finer && !full && item.choice == candidate.first_choice);
-        const model::ItemCost drawn_as = drawn_cost(item.rep, choice.cost);
+        const model::ItemCost drawn_as = drawn_cost(choice);
         cost += drawn_as;
         const model::FrameCombine& combine = costs.combine;
         const double item_us = static_cast<double>(combine.frame_us(drawn_as.submit_us, drawn_as.raster_us) - combine.fixed_us);
@@ -181,7 +181,7 @@ void Engine::Impl::push(const UnpreparedItem& item, SubmitReport& report) {
 void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, double start_us, SubmitReport& report) {
     device->draws.plays();
     const model::FrameCombine combine = this->combine();
-    unprepared.plan(state.shown, frustum, pose, drawn_scale(pose), preparer->item_costs());
+    unprepared.plan(state.shown, frustum, pose, drawn_scale(pose), preparer->item_costs(), drawn_without());
     const std::span<const UnpreparedGroup> groups = unprepared.groups();
     model::ItemCost rest_stand_in, so_far, slice;
     for (const UnpreparedGroup& group : groups) rest_stand_in += group.stand_in.cost;
@@ -225,8 +225,16 @@ bool Engine::Impl::submit_rest(const Pose& pose, const SubmitLimits& limits, Sub
     const bool still = limits.frame_ns >= 0 && watch.at_rest(pose, limits.frame_ns) && !device->lost() && !motion_in_view(pose);
     if (still) {
         report = last_report;
-        const RestScene scene{
-            model, preparer->item_costs(), costs, *device, options.device.viewport, options.slice_us, filter_costs, best_filter};
+        const RestScene scene{model,
+                              preparer->item_costs(),
+                              costs,
+                              *device,
+                              options.device.viewport,
+                              options.slice_us,
+                              filter_costs,
+                              best_filter,
+                              gl::left_out(options.device.switches, hidden)};
+        if (lever.count > 0) device->hide_effects(hidden);  // full detail has the time for all of them
         if (rest_picture.frame(scene, pose, limits, correction.factor, report)) return true;
         report = {};
     } else {
@@ -250,6 +258,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.profile().begin();
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
     e.device->set_filter(e.filtered && !e.use_last ? e.best_filter : e.device->filter());
+    if (e.lever.count > 0) e.device->hide_effects(e.hidden | e.lever.left_out);
     e.device->begin_frame(pose, e.drawn_resolution);
     if (e.use_last) {
         e.submit_last(pose, limits, start_us, report);
@@ -289,11 +298,13 @@ bool Engine::fell_to_floor(const Pose& pose, double time_us, double correction) 
     const model::ViewScale scale = e.drawn_scale(pose);
     const model::FrameCombine combine = e.combine();
     model::ItemCost sum;
+    const model::EffectMask hidden = e.drawn_without();
     for (const select::Shown& shown : last) {
         if (shown.form == select::SelectState::opened) continue;
         const Box& box = e.model.nodes[shown.node].box;
         if (!model::visible(e.frustum, box)) continue;
-        sum += e.preparer->item_costs().of(shown.form, box, pose.position, scale);
+        float pixels = 0;
+        sum += e.preparer->item_costs().of(shown.form, box, pose.position, scale, pixels, hidden);
         if ((combine.frame_us(sum.submit_us, sum.raster_us) + e.enlarge_us()) * correction > time_us) return false;
     }
     return true;

@@ -253,7 +253,8 @@ void RestPicture::collect_node(const Frame& frame, model::Index index) {
     const model::Index rep = node.first_rep + node.rep_count - 1;
     if (!CHECK_RARE(leaves_.size() < leaves_.capacity(), "There are no more leaves than were counted")) return;
     const auto near = static_cast<float>(distance);
-    model::ItemCost cost = frame.scene.item_costs.of(rep, node.box, pose_.position, scale_);
+    float pixels = 0;
+    model::ItemCost cost = frame.scene.item_costs.of(rep, node.box, pose_.position, scale_, pixels, frame.scene.hidden);
     if (frame.scene.filter_costs.any()) cost = frame.scene.filter_costs.with(rep, cost);
     leaves_.push_back({{index, rep}, cost, near, bucket_of(near)});
     ++place_[leaves_.back().bucket];

@@ -51,7 +51,8 @@ struct RestScene {
     model::Viewport viewport;
     double slice_us = 1000;
     const FilterCosts& filter_costs;
-    rt::TextureFilter filter;  ///< the best one: a picture at rest has the time
+    rt::TextureFilter filter;      ///< the best one: a picture at rest has the time
+    model::EffectMask hidden = 0;  ///< effects that are not drawn
 };
 
 /// Belongs to the frame thread. Sized once; then nothing allocates. Each part is drawn only if its predicted cost fits the frame.

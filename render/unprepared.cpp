@@ -54,6 +54,7 @@ struct Unprepared::View {
     const dvec3& eye;
     const model::ViewScale& scale;
     const model::ItemCosts& costs;
+    model::EffectMask hidden;
 };
 
 void Unprepared::reserve(const model::Model& model) {
@@ -76,7 +77,8 @@ UnpreparedItem Unprepared::item_of(model::Index node, model::Index rep, const Vi
     const model::Representation& r = model_->reps[rep];
     UnpreparedItem item;
     item.item = {node, rep};
-    item.cost = view.costs.of(rep, n.box, view.eye, view.scale);
+    float rasterised = 0;
+    item.cost = view.costs.of(rep, n.box, view.eye, view.scale, rasterised, view.hidden);
     item.pixels = std::min(model::rasterised_pixels(r, n.box, view.eye, view.scale), view.scale.viewport_pixels);
     item.error_rad = r.error_m / prepare::error_distance(static_cast<float>(n.box.distance(view.eye)));
     item.floor = rep == everywhere_rep(*model_, node) && (n.child_count > 0 || rep + 1 < n.first_rep + n.rep_count);
@@ -134,8 +136,8 @@ bool Unprepared::walk(std::span<const model::Index> shown, const View& view) {
 }
 
 void Unprepared::plan(std::span<const model::Index> shown, const model::Frustum& frustum, const Pose& pose,
-                      const model::ViewScale& scale, const model::ItemCosts& costs) {
-    const View view{frustum, pose.position, scale, costs};
+                      const model::ViewScale& scale, const model::ItemCosts& costs, model::EffectMask hidden) {
+    const View view{frustum, pose.position, scale, costs, hidden};
     if (!walk(shown, view)) walk({}, view);
     std::sort(groups_.begin(), groups_.end(), [](const UnpreparedGroup& a, const UnpreparedGroup& b) {
         return a.stand_in.pixels != b.stand_in.pixels ? a.stand_in.pixels > b.stand_in.pixels : a.first < b.first;

@@ -38,9 +38,10 @@ public:
 
     /// Covers what the pose sees. `shown` is by node, as in SelectState. A node of the last cut keeps its form where that is
     /// legal at this pose, else it shows its form that is valid everywhere. What was not in the last cut shows the coarse levels.
-    /// If that takes too many items, everything shows the coarse levels. Groups with most pixels come first.
+    /// If that takes too many items, everything shows the coarse levels. Costs are without the `hidden` effects. Groups with most
+    /// pixels come first.
     void plan(std::span<const model::Index> shown, const model::Frustum& frustum, const Pose& pose, const model::ViewScale& scale,
-              const model::ItemCosts& costs);
+              const model::ItemCosts& costs, model::EffectMask hidden = 0);
     [[nodiscard]] std::span<const UnpreparedGroup> groups() const { return groups_; }
     [[nodiscard]] std::span<const UnpreparedItem> items() const { return items_; }
 

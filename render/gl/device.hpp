@@ -215,6 +215,9 @@ inline model::Quality quality_of(const Device& device, const model::CostModel& c
     return {device.samples(), device.filter(), costs.filter == rt::TextureFilter::automatic ? automatic : costs.filter};
 }
 
+/// What hide_effects(hidden) leaves out of a device with these switches.
+model::EffectMask left_out(std::span<const model::EffectMask> switches, model::EffectMask hidden);
+
 /// Sets how many threads software GL draws with, for the whole process; 0: the measured default. Call it before any other thread
 /// exists: drivers read the number from the environment (LP_NUM_THREADS), which must not change while threads read it.
 void prepare_process(int rasterisers);

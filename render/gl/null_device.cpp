@@ -48,6 +48,7 @@ public:
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
+    void hide_effects(model::EffectMask hidden) override REQUIRES(draws) { hidden_ = left_out(options_.switches, hidden); }
     void bind() override ASSERT_CAPABILITY(draws) {}
     void release() override RELEASE(draws) NO_THREAD_SAFETY_ANALYSIS {}
 
@@ -108,6 +109,7 @@ private:
     std::optional<model::ItemCosts> item_costs_;
     model::MovingNodes moving_ GUARDED_BY(draws);
     double time_s_ GUARDED_BY(draws) = 0;
+    model::EffectMask hidden_ GUARDED_BY(draws) = 0;
     dvec3 eye_{0.0};
     model::ViewScale scale_;
     FrameStats stats_ GUARDED_BY(draws);
@@ -159,9 +161,11 @@ void NullDevice::begin_frame(const Pose& pose, float resolution) {
 }
 
 model::ItemCost NullDevice::cost_of(const DrawItem& item) const {
+    float pixels = 0;
     if (const auto moving = moving_.find(item.node))
-        return item_costs_->of(item.rep, moving->rest, moving->pose.back(eye_), model::turned_back(scale_, moving->pose));
-    return item_costs_->of(item.rep, model_->nodes[item.node].box, eye_, scale_);
+        return item_costs_->of(item.rep, moving->rest, moving->pose.back(eye_), model::turned_back(scale_, moving->pose), pixels,
+                               hidden_);
+    return item_costs_->of(item.rep, model_->nodes[item.node].box, eye_, scale_, pixels, hidden_);
 }
 
 void NullDevice::draw(std::span<const DrawItem> items) {

@@ -43,6 +43,13 @@ Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options) {
                  "Use one of: " + drawing_backends(), ErrorKind::unsupported};
 }
 
+model::EffectMask left_out(std::span<const model::EffectMask> switches, model::EffectMask hidden) {
+    model::EffectMask out = 0;
+    for (const model::EffectMask group : switches)
+        if ((group & ~hidden) == 0) out |= group;
+    return out;
+}
+
 Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
     if (options.kind == BackendKind::null) return open_null_device(options, options.null);
     if (options.viewport.width == 0 || options.viewport.height == 0) {

@@ -156,7 +156,7 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, const Box& box, float 
 
     const auto fill = [&](Choice& choice, Index r, float error_rad) {
         choice.rep = r;
-        choice.cost = item_costs_.of(r, box, eye, view.scale, choice.surface_px) *
+        choice.cost = item_costs_.of(r, box, eye, view.scale, choice.surface_px, view.without) *
                       (model::is_full_detail(node, r, model_.reps[r].error_m) ? view.full_factor : view.coarse_factor);
         choice.surface_px *= view.wide.viewport_pixels / view.scale.viewport_pixels;  // of full resolution
         choice.error_rad = error_rad;

@@ -22,6 +22,7 @@ struct RegionView {
     float resolved_rad = 1e-3F;  ///< prepare::resolved_rad()
     float target_error_rad = 0;  ///< representations with a smaller error are not offered
     bool full_depth = false;
+    model::EffectMask without = 0;             ///< effects that are not in the costs
     float full_factor = 1, coarse_factor = 1;  ///< on the costs of full detail and of all other forms
     float focus_strength = 0.5F;
     float speed_mps = 0, turn_rps = 0;  ///< of the eye

@@ -89,6 +89,7 @@ struct Preparer::Impl {
     std::uint32_t choice_bound = 0;             ///< choices that the visits may need
     float used_factor = 1;                      ///< of the last run(), for value_at() too
     float target_factor = 1;                    ///< of the error target, raised while frames look at too many nodes
+    std::array<EffectLoss, max_effect_groups> effect_losses;
     std::atomic<std::int64_t> worker_cpu_ns{0};
 
     Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o);
@@ -105,6 +106,7 @@ struct Preparer::Impl {
     void find_hidden_parents();
     void evaluate_all(const RegionView& view, PreparedFrame& out);
     void set_values(const RegionView& view, PreparedFrame& out);
+    void value_effects(PreparedFrame& out) const;
     void adapt(const PreparedFrame& out);
 };
 
@@ -192,6 +194,7 @@ RegionView Preparer::Impl::view_of(const PreparedFrame& frame, double speed_mps,
         options.target_error_rad > 0.0 ? options.target_error_rad : std::max(0.125 * drawn_rad, frame.acuity_rad);
     view.target_error_rad = static_cast<float>(target) * used_factor;
     view.full_depth = options.full_depth;
+    view.without = frame.without;
     view.full_factor = frame.full_factor;
     view.coarse_factor = frame.coarse_factor;
     view.focus_strength = static_cast<float>(std::clamp(finite_or(options.focus_strength, 0.0), 0.0, 1.0));
@@ -377,6 +380,27 @@ void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
     values.run(costs.combine, view.resolved_rad, weights, shown_px, out, looks, shown.before_sky());
 }
 
+/// The same weighted pixels as in the value of forms, times the share of a missing thing's loss.
+void Preparer::Impl::value_effects(PreparedFrame& out) const {
+    constexpr float of_missing_unmeasured = 1.0F / 6;  // as BlurLoss has it
+    out.effect_value = {};
+    const float of_missing = model.losses.empty() ? of_missing_unmeasured : looks_of(model, options.sky).of_missing;
+    for (std::size_t g = 0; g < max_effect_groups; ++g) {
+        const EffectLoss& loss = effect_losses[g];
+        if (loss.before.empty()) continue;
+        double sum = 0;
+        for (std::size_t i = 0; i < out.candidates.size(); ++i) {
+            if (out.candidates[i].child_count > 0) continue;
+            const Index node = out.candidates[i].node;
+            const float of_node = loss.before[node] + loss.between * (loss.after[node] - loss.before[node]);
+            const float seen = std::exp2(-loss.fog_density * weights[i].distance_m), in_fog = loss.is_fog ? 1.0F - seen : seen;
+            const float share = std::min(1.0F, of_node * in_fog * in_fog / of_missing);
+            sum += static_cast<double>(weights[i].pixel_weight * shown_px[i] * share);
+        }
+        out.effect_value[g] = static_cast<float>(sum);
+    }
+}
+
 // A band between raising and lowering, so that the target does not swing while the eye stands still.
 void Preparer::Impl::adapt(const PreparedFrame& out) {
     if (options.max_visits == 0 || options.full_depth) return;
@@ -393,6 +417,8 @@ Preparer::Preparer(const model::Model& model, const model::CostModel& costs, con
 }
 Preparer::~Preparer() = default;
 void Preparer::end_workers() { impl_->workers.end(); }
+
+void Preparer::set_effect_losses(const std::array<EffectLoss, max_effect_groups>& losses) { impl_->effect_losses = losses; }
 
 const model::ItemCosts& Preparer::item_costs() const { return impl_->evaluator.item_costs(); }
 
@@ -419,6 +445,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     out.truncated = false;
     out.full_cost = {};
     out.full_value = 0;
+    out.effect_value = {};
     out.visits = out.hidden = 0;
     if (s.model.nodes.empty()) return;
 
@@ -451,12 +478,14 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.tried.region = out.region;
     s.tried.viewport = viewport;
     s.tried.acuity_rad = out.acuity_rad;
+    s.tried.without = out.without;
     s.tried.full_factor = out.full_factor;
     s.tried.coarse_factor = out.coarse_factor;
     s.shown_px = s.shown.run(s.weights, out.candidates, out.choices, view.wide, view.scale,
                              {&s.model, &s.evaluator.item_costs().estimator(), view.eye, s.moving.any() ? &s.moving : nullptr},
                              s.hidden_nodes);
     s.set_values(view, out);
+    s.value_effects(out);
     propagate_up(s.costs.combine, view.resolved_rad, s.weights, out);
     enforce_monotone_benefit(out);
     s.adapt(out);

@@ -62,6 +62,17 @@ struct Region {
     double angle_rad = 0;  ///< largest turn away from the centre's view
 };
 
+/// Groups of effects that a frame may buy, each by itself.
+constexpr std::size_t max_effect_groups = 4;
+
+/// What a picture loses where a group of effects is left out.
+struct EffectLoss {
+    std::span<const float> before, after;  ///< by node: mean squared difference of the colours, 0..1, in two lights; empty: none
+    float between = 0;                     ///< 0..1: the light is between them
+    bool is_fog = false;                   ///< the differences are of what is infinitely far
+    float fog_density = 0;                 ///< Daylight::fog_density
+};
+
 constexpr std::uint32_t value_levels = 40;
 
 /// The best cuts of a whole frame by the rate at which they stop: value (weighted pixels) and cost (us, of the items alone). Both
@@ -86,14 +97,17 @@ struct PreparedFrame {
     double full_value = 0;                     ///< sum of their values; 0: not computed
     ValueCurve curve;                          ///< of the best cuts
     float full_factor = 1, coarse_factor = 1;  ///< in the costs of full detail and of all other forms
-    float resolution = 1;                      ///< of the picture that the costs are for, 0..1]: share of its width
-    float resolution_value = 0;                ///< weighted pixels: what it shows more than full resolution for the same time
-    std::uint32_t visits = 0;                  ///< nodes tested, invisible ones included
-    std::uint32_t hidden = 0;                  ///< of these, nodes in the view that others hide; their subtrees were not tested
-    bool truncated = false;                    ///< capacity reached: deeper detail is missing, but the tree is complete and legal
-    double acuity_rad = 0;                     ///< PrepareOptions::acuity_rad
-    float target_error_rad = 0;                ///< nodes with a smaller error were not opened, and finer choices not offered
-    double cpu_us = 0;                         ///< all workers together
+    model::EffectMask without = 0;             ///< effects that are not in the costs
+    std::array<float, max_effect_groups>
+        effect_value{};          ///< weighted pixels that each group of effects shows; 0: none, or not set
+    float resolution = 1;        ///< of the picture that the costs are for, 0..1]: share of its width
+    float resolution_value = 0;  ///< weighted pixels: what it shows more than full resolution for the same time
+    std::uint32_t visits = 0;    ///< nodes tested, invisible ones included
+    std::uint32_t hidden = 0;    ///< of these, nodes in the view that others hide; their subtrees were not tested
+    bool truncated = false;      ///< capacity reached: deeper detail is missing, but the tree is complete and legal
+    double acuity_rad = 0;       ///< PrepareOptions::acuity_rad
+    float target_error_rad = 0;  ///< nodes with a smaller error were not opened, and finer choices not offered
+    double cpu_us = 0;           ///< all workers together
     double wall_us = 0;
 };
 
@@ -146,13 +160,16 @@ public:
     /// Fills `out` for `region`. Non-finite numbers of the region are replaced; a position becomes the model's centre.
     /// Independent of earlier frames, unless one exceeded max_visits. speed_mps, turn_rps: of the eye, for the motion factor.
     /// out.resolution: of the picture that costs and detail are for, as a share of the viewport's width.
-    /// out.full_factor, out.coarse_factor: on the costs of full detail and of all other forms.
+    /// out.full_factor, out.coarse_factor: on the costs of full detail and of all other forms. out.without: not in the costs.
     void run(const Region& region, model::Viewport viewport, std::uint64_t frame, double speed_mps, double turn_rps,
              PreparedFrame& out);
     /// The same frame's values and costs at another resolution, without a new search for what is visible.
     const ValueCurve& value_at(float resolution);
     /// Adds the time of the last value_at() to that of `out`.
     void add_value_time(PreparedFrame& out) const;
+
+    /// Of the next run(): fills effect_value by these. At first there are none. What the spans hold must outlive the run.
+    void set_effect_losses(const std::array<EffectLoss, max_effect_groups>& losses);
 
     /// Predicts the costs of the choices.
     [[nodiscard]] const model::ItemCosts& item_costs() const;

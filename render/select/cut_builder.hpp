@@ -102,6 +102,8 @@ public:
     /// The same for selectors without a budget: everything.
     void buy_all_items(Budget& budget) { items_.buy_all(budget); }
     /// The items of a set, as BoughtItems::set, and what is prepaid.
+    void put_items_in_order() { items_.put_in_order(state_); }
+    void buy_items_down_to(float rate, const Sum& spent, Budget& budget) { items_.buy_down_to(rate, spent, budget); }
     void buy_items_of(std::uint64_t set, Budget& budget) { items_.buy_set(set, budget); }
 
     /// Writes the cut, its sums and hash, and stores it for the next frame's hysteresis. Buys the items that still fit.

@@ -55,7 +55,7 @@ void finish_dropping(const SelectInput& input, CutBuilder& builder, Budget& budg
 /// Funkhouser and Sequin 1993, as Maciel 1994, 2.2.2, has it: pairs of an object and one of its forms, the greatest value per us
 /// first, until the budget is spent. Of an object's pairs the finest that was taken counts. A pair that does not fit, or has no
 /// value, is passed over; objects of which none is taken are not drawn. Values per us that differ by less than 0.8 % count as
-/// equal.
+/// equal. The tuple's third member, the rendering, is the frame's: items of effects stand in the same order.
 class Greedy final : public Selector {
 public:
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
@@ -64,6 +64,7 @@ public:
         Budget budget(input);
         CutBuilder builder(input, state);
         builder.buy_items_of(0, budget);
+        builder.put_items_in_order();
         drop_all(builder);
         const float unit = greatest_rate(builder, budget);
         BucketQueue queue(state.scratch().queue_heads, state.scratch().links);
@@ -80,6 +81,7 @@ public:
             const Index c = queue.pop();
             const std::uint32_t form = next[c], now = builder.chosen(c);
             const prepare::Choice& choice = builder.choices(c)[form];
+            builder.buy_items_down_to(rate(budget, choice), total, budget);
             const Sum with = total.changed(now == none ? model::ItemCost{} : builder.choices(c)[now].cost, choice.cost);
             if ((now == none || choice.value > builder.choices(c)[now].value) && budget.fits(with)) {
                 total = with;
@@ -88,6 +90,7 @@ public:
             }
             push(c, rate(budget, choice), form);
         }
+        builder.buy_items_down_to(0.0F, total, budget);
         finish_dropping(input, builder, budget, taken, cut);
     }
 

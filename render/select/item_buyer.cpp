@@ -80,6 +80,16 @@ void ItemBuyer::buy_set(std::uint64_t set, Budget& budget) {
         if (list[i].prepaid || (set >> i & 1U) != 0) take(i, budget);
 }
 
+void ItemBuyer::buy_down_to(float rate, const Sum& spent, Budget& budget) {
+    while (!in_order_.empty()) {
+        const Place place = in_order_.front();
+        const Item& item = offered()[place.item];
+        if (item.value / item.cost_us < rate) return;
+        in_order_ = in_order_.subspan(1);
+        try_item(place, spent, 1.0, budget);
+    }
+}
+
 void ItemBuyer::buy_what_fits(const Sum& spent, const SelectState& state, Budget& budget) {
     if (offered().empty()) return;
     const double fresh = fresh_share(state);

@@ -25,6 +25,10 @@ public:
     /// For selectors without a budget: everything.
     void buy_all(Budget& budget);
     void buy_set(std::uint64_t set, Budget& budget);
+    /// For a selector that goes down its own list of rates. Puts the items in their order, once. Then, before each step, buys
+    /// those whose rate is at least that of the step. What does not fit is passed over.
+    void put_in_order(const SelectState& state) { in_order_ = places(state); }
+    void buy_down_to(float rate, const Sum& spent, Budget& budget);
     /// The second round. spent: the sums of the forms that are taken.
     void buy_what_fits(const Sum& spent, const SelectState& state, Budget& budget);
 
@@ -48,6 +52,7 @@ private:
     const SelectInput& input_;
     BoughtItems bought_;
     std::array<Place, ItemList::capacity> places_{};
+    std::span<Place> in_order_;  ///< of places_: what put_in_order() left to be tried
 };
 
 }  // namespace surefoot::select

@@ -186,6 +186,38 @@ TEST(NullDevice, charges_the_filter_that_is_set_from_picture_to_picture) {
     EXPECT_EQ(charged({}, {F::trilinear}), one) << "a device that was not prepared for it keeps its filter";
 }
 
+TEST(NullDevice, charges_no_effect_that_is_hidden) {
+    SmallModel small;
+    model::Material lit = plain(1, 1, 1);
+    lit.effects = model::effect_fog | model::effect_openness;
+    const auto node = small.square(small.material(lit), at(0, 0, -3));
+    Scene scene{small.finish(), {{node, node - 1}}};
+    model::CostModel costs = model::default_costs();
+    costs.prices = {{model::effect_fog, 10'000, 0, 5}, {model::effect_openness, 2000, 0, 0}};
+    gl::NullOptions null;
+    null.costs = &costs;
+    gl::DeviceOptions how;
+    how.switches = {model::effect_fog};
+    auto device = gl::open_null_device(how, null);
+    ASSERT_TRUE(device.ok());
+    (*device)->draws.plays();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    const double all = charge_of(**device, scene, 1);
+    (*device)->hide_effects(~model::EffectMask{0});
+    const double less = charge_of(**device, scene, 1);
+    const float pixels = [&] {
+        float found = 0;
+        model::ItemCosts(scene.model, costs)
+            .of(node - 1, scene.model.nodes[node].box, dvec3(0), model::make_view_scale(Pose{}, {1280, 720}), found);
+        return found;
+    }();
+    const model::FrameCombine& k = costs.combine;
+    EXPECT_NEAR(all - less, static_cast<double>(20 * k.submit_weight + 0.005F * pixels * k.raster_weight), 0.01 * (all - less))
+        << "two triangles; openness is no switch, and stays";
+    (*device)->hide_effects(0);
+    EXPECT_DOUBLE_EQ(charge_of(**device, scene, 1), all);
+}
+
 // Near, and of two state classes: the virtual clock is what prepare predicts, to the bit.
 TEST(NullDevice, charges_exactly_what_prepare_predicts_of_parts) {
     SmallModel small;

@@ -304,5 +304,36 @@ TEST(BenefitModels, KeepTheBudgetAndGuideTheSearch) {
     for (const BenefitModelEntry& entry : benefit_models()) EXPECT_NE(unknown.error().remedy.find(entry.name), std::string::npos);
 }
 
+TEST(Dropping, GreedyBuysItemsInTheOrderOfItsPairs) {
+    Random random(5);
+    int before = 0, after = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        Scene s = seen_scene(seed, 60, random);
+        if (s.frame.candidates.empty()) continue;
+        const double budget_us = 0.4 * double{s.run("flat", infinity).predicted_us};
+        s.forget();
+        s.run("greedy", budget_us);
+        const double alone = s.cut.value;
+        const auto with = [&](float rate) {
+            const auto cost_us = static_cast<float>(0.2 * budget_us);
+            ItemList items;
+            items.offer({ItemKind::effect, 1, cost_us, rate * cost_us});
+            SelectInput input = s.input(budget_us);
+            input.items = &items;
+            s.forget();
+            find_selector("greedy")->run(input, s.state, s.cut);
+            return s.cut.bought.has(0);
+        };
+        if (with(1e6F)) {
+            ++before;
+            EXPECT_LE(s.cut.value, alone) << "pairs have what is left";
+            EXPECT_LE(double{s.cut.predicted_us}, budget_us);
+        }
+        if (with(1e-12F)) ++after;
+    }
+    EXPECT_GT(before, 30) << "a rate above all pairs' is bought first";
+    EXPECT_LT(after, before) << "one below all of them has what they leave";
+}
+
 }  // namespace
 }  // namespace surefoot::select

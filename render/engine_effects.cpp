@@ -1,0 +1,157 @@
+// The engine's effects as items: offered before a selection, and taken or left out after it.
+#include <algorithm>
+#include <cmath>
+
+#include "render/engine_impl.hpp"
+
+namespace surefoot {
+
+void EffectDwell::answer(bool bought) {
+    if (bought) {
+        away_ = false;
+        ++kept_;
+        return;
+    }
+    if (away_) return;  // its wait is over, and it goes on
+    const bool too_short = wait_ > 0 && kept_ < long_stay * wait_;
+    left_ = wait_ = too_short ? std::min(2 * wait_, max_wait) : min_wait;
+    kept_ = 0;
+    away_ = true;
+}
+
+void Engine::Impl::reserve_effects() {
+    const std::vector<EffectGroup> groups = groups_of(options.device.switches);
+    lever.count = std::min(groups.size(), lever.groups.size());
+    std::copy_n(groups.begin(), lever.count, lever.groups.begin());
+    worth = EffectWorth(model, lever.all(), options.effect_hours, options.device.sky);
+}
+
+/// Which effects the next sets have no price of: those that a visitor switched off, and all that frames buy.
+void Engine::Impl::price_without() {
+    const model::EffectMask bought = by_budget ? lever.every() : 0;
+    without.store(gl::left_out(options.device.switches, hidden) | bought, std::memory_order_relaxed);
+}
+
+namespace {
+
+/// What more work adds to a frame with these sums, us.
+float more_us(const model::FrameCombine& combine, const model::ItemCost& forms, const model::ItemCost& more) {
+    return combine.frame_us(forms.submit_us + more.submit_us, forms.raster_us + more.raster_us) -
+           combine.frame_us(forms.submit_us, forms.raster_us);
+}
+
+}  // namespace
+
+model::ItemCost Engine::Impl::effects_of(model::Index rep, float surface_px, model::EffectMask effects) const {
+    return preparer->item_costs().of_effects(rep, surface_px * drawn_resolution * drawn_resolution, effects);
+}
+
+/// By the forms of the last cut: a frame shows much of what the last one showed. Before there was one, by as much of full detail
+/// as there is time for.
+void Engine::Impl::price_groups(const prepare::PreparedFrame& set, double room_us) {
+    if (lever.known) return;
+    lever.forms = set.full_cost;
+    lever.costs = {};
+    for (const prepare::Candidate& candidate : set.candidates) {
+        if (candidate.child_count > 0) continue;
+        const prepare::Choice& finest = set.choices[candidate.first_choice + candidate.choice_count - 1];
+        for (std::size_t g = 0; g < lever.count; ++g)
+            lever.costs[g] += effects_of(finest.rep, finest.surface_px, lever.groups[g].own);
+    }
+    const double full_us = static_cast<double>(more_us(combine(), {}, lever.forms));
+    const double share = full_us > 0 ? std::clamp(room_us / full_us, 0.0, 1.0) : 1.0;
+    lever.forms = lever.forms * static_cast<float>(share);
+    for (model::ItemCost& cost : lever.costs) cost = cost * static_cast<float>(share);
+}
+
+void Engine::Impl::offer_effects(const prepare::PreparedFrame& set, double room_us) {
+    if (lever.count == 0) return;
+    lever.offered_us = {};
+    price_groups(set, room_us);
+    const model::FrameCombine combine = this->combine();
+    for (std::size_t g = 0; g < lever.count; ++g) {
+        EffectSale& sale = lever.sales[g];
+        const EffectGroup& group = lever.groups[g];
+        const EffectSale before = sale;
+        sale = {group.mask};
+        if ((group.own & ~hidden) == 0 || !by_budget) continue;
+        const float us = more_us(combine, lever.forms, lever.costs[g]), value = set.effect_value[g];
+        if (!(us > 0.0F) || !(value > 0.0F)) continue;
+        sale.dropped = before.dropped;
+        if (before.dropped) sale.rate = before.rate;
+        EffectDwell& of_group = lever.dwell[g];
+        if (!of_group.offer()) continue;
+        const float worth_now = of_group.away() ? EffectDwell::value_share * value : value;
+        if (!offered.offer({select::ItemKind::effect, group.mask, us, worth_now})) continue;
+        if (!before.dropped) sale.rate = value / us;
+        lever.offered_us[g] = us;
+    }
+}
+
+/// What costs nothing is shown; so is what shows nothing, unless that would cost something.
+void Engine::Impl::take_effects(const prepare::PreparedFrame& set) {
+    if (lever.count == 0) return;
+    lever.left_out = lever.shown = 0;
+    lever.spent_us = 0;
+    for (std::size_t g = 0; g < lever.count; ++g) {
+        const EffectGroup& group = lever.groups[g];
+        EffectSale& sale = lever.sales[g];
+        if ((group.own & ~hidden) == 0 || !by_budget) continue;
+        bool shows = !(more_us(combine(), lever.forms, lever.costs[g]) > 0.0F);
+        if (lever.offered_us[g] > 0.0F) {
+            shows = was_bought({select::ItemKind::effect, group.mask});
+            sale.fell = !shows && !sale.dropped;
+            if (shows && sale.dropped) sale.rate = set.effect_value[g] / lever.offered_us[g];
+            sale.dropped = !shows;
+            lever.dwell[g].answer(shows);
+            if (shows) lever.spent_us += static_cast<double>(lever.offered_us[g]);
+        }
+        if (shows)
+            lever.shown |= group.own;
+        else
+            lever.left_out |= group.mask;
+    }
+    lever.shown &= ~(lever.left_out | hidden) & set.without;
+    learn_effects();
+}
+
+/// The forms of the new cut, and what the groups cost on them. Then the slices' costs are with what is shown.
+void Engine::Impl::learn_effects() {
+    const std::vector<prepare::Choice>& choices = prepared->choices;
+    lever.known = true;
+    lever.forms = {};
+    lever.costs = {};
+    for (const select::CutItem& item : cut.items) {
+        const prepare::Choice& choice = choices[item.choice];
+        lever.forms += choice.cost;
+        for (std::size_t g = 0; g < lever.count; ++g)
+            lever.costs[g] += effects_of(choice.rep, choice.surface_px, lever.groups[g].own);
+    }
+    if (lever.shown != 0) price_slices();
+}
+
+/// As what they hold is drawn.
+void Engine::Impl::price_slices() {
+    const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
+    for (select::Slice& slice : plan.slices) {
+        slice.cost = slice.stand_in_cost = {};
+        for (const select::CutItem& item : order.subspan(slice.first_item, slice.item_count))
+            slice.cost += drawn_cost(prepared->choices[item.choice]);
+        for (const select::CutItem& item : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count))
+            slice.stand_in_cost += drawn_cost(prepared->choices[item.choice]);
+    }
+}
+
+bool Engine::Impl::was_bought(const select::ItemName& name) const {
+    const std::span<const select::Item> list = offered.offered();
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (list[i].name() == name) return cut.bought.has(i);
+    return false;
+}
+
+std::span<const EffectSale> Engine::effect_sales() const {
+    impl_->draws.plays();
+    return std::span(impl_->lever.sales).first(impl_->lever.count);
+}
+
+}  // namespace surefoot

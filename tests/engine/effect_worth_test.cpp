@@ -1,0 +1,90 @@
+// What leaving an effect out changes of the picture, against differences worked out by hand.
+#include "render/effect_worth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
+
+#include "tests/gl/small_models.hpp"
+
+namespace surefoot {
+namespace {
+
+using model::effect_fog, model::effect_lamps, model::effect_shadow, model::effect_sun;
+using test::SmallModel;
+
+constexpr std::array<float, 3> sky{0.5F, 0.6F, 0.7F};
+
+float loss_at(const EffectWorth& worth, std::size_t group, std::size_t node, float hour) {
+    const prepare::EffectLoss loss = worth.at(hour)[group];
+    return loss.before[node] + loss.between * (loss.after[node] - loss.before[node]);
+}
+
+double mean_square(const dvec3& difference) { return glm::dot(difference, difference) / 3; }
+
+TEST(EffectGroups, ASwitchOwnsWhatNoSmallerOneHas) {
+    const std::vector<model::EffectMask> switches{effect_sun | effect_shadow, effect_shadow, effect_fog};
+    const std::vector<EffectGroup> groups = groups_of(switches);
+    ASSERT_EQ(groups.size(), 3U);
+    for (std::size_t i = 0; i < groups.size(); ++i) EXPECT_EQ(groups[i].mask, switches[i]);
+    EXPECT_EQ(groups[0].own, effect_sun);
+    EXPECT_EQ(groups[1].own, effect_shadow);
+    EXPECT_EQ(groups[2].own, effect_fog);
+}
+
+TEST(EffectWorth, IsTheMeanSquaredDifferenceOfTheColours) {
+    SmallModel small;
+    const auto lit = small.square(small.material(test::plain(0.5F, 0.4F, 0.2F, 1, effect_sun | effect_fog)), test::at(0, 0, -3));
+    const auto bare = small.square(small.material(test::plain(0.5F, 0.4F, 0.2F)), test::at(5, 0, -3), 2);
+    const model::Model m = small.finish();
+    const EffectWorth worth(m, groups_of(std::vector<model::EffectMask>{effect_sun, effect_fog}), {}, sky);
+    ASSERT_TRUE(worth.any());
+    // The square faces +z: half way from ground to sky, and the sun by its z.
+    const dvec3 colour(0.5F, 0.4F, 0.2F), fog(0.5F, 0.6F, 0.7F);
+    const dvec3 sun(0.56F, 0.53F, 0.47F), ground(0.34F, 0.32F, 0.30F), up(0.52F, 0.56F, 0.62F);
+    const dvec3 shown = colour * (0.5 * (ground + up) + m.sun_direction.z * sun);
+    EXPECT_NEAR(loss_at(worth, 0, lit, 0), mean_square(colour - shown), 1e-4);
+    EXPECT_NEAR(loss_at(worth, 1, lit, 0), mean_square(fog - shown), 1e-4) << "as if nothing of its colour were left";
+    EXPECT_EQ(loss_at(worth, 0, bare, 0), 0) << "it calls for none";
+    EXPECT_EQ(loss_at(worth, 1, bare, 0), 0);
+    // The bare square has four times the area.
+    EXPECT_NEAR(loss_at(worth, 0, 0, 0), 0.2 * mean_square(colour - shown), 1e-4) << "a cluster has the mean of its leaves";
+    EXPECT_TRUE(worth.at(0)[0].after.data() == worth.at(0)[0].before.data() && worth.at(0)[1].is_fog && !worth.at(0)[0].is_fog);
+    EXPECT_TRUE(worth.at(0)[2].before.empty());
+}
+
+TEST(EffectWorth, FollowsTheHour) {
+    SmallModel small;
+    const auto node =
+        small.square(small.material(test::plain(0.5F, 0.4F, 0.2F, 1, effect_sun | effect_lamps)), test::at(0, 0, -3));
+    model::Model m = small.finish();
+    m.lamp_light.assign(m.vertices.size(), {{255, 255, 128, 0}, {}});
+    m.light.max_lamp_light = 0.5F;
+    const std::vector<double> hours{0, 6, 12, 18, 24};
+    const EffectWorth worth(m, groups_of(std::vector<model::EffectMask>{effect_sun, effect_lamps}), hours, sky);
+    EXPECT_GT(loss_at(worth, 1, node, 0), 0.001F) << "lamps by night";
+    EXPECT_EQ(loss_at(worth, 1, node, 12), 0) << "and none by day";
+    EXPECT_GT(loss_at(worth, 0, node, 0), loss_at(worth, 0, node, 12)) << "without a sun, all is as bright as at no hour";
+    EXPECT_NEAR(loss_at(worth, 1, node, 3), 0.5F * (loss_at(worth, 1, node, 0) + loss_at(worth, 1, node, 6)), 1e-6);
+    EXPECT_EQ(loss_at(worth, 1, node, 24), loss_at(worth, 1, node, 0));
+    const EffectWorth noon(m, groups_of(std::vector<model::EffectMask>{effect_sun, effect_lamps}), std::vector<double>{12}, sky);
+    for (const float hour : {0.0F, 12.0F, 23.9F}) EXPECT_EQ(loss_at(noon, 0, node, hour), loss_at(worth, 0, node, 12));
+}
+
+TEST(EffectWorth, OfShadowsIsWhatTheyTakeFromTheSun) {
+    SmallModel small;
+    const auto node = small.square(small.material(test::plain(1, 1, 1, 1, effect_sun | effect_shadow)), test::at(0, 0, -3));
+    model::Model m = small.finish();
+    m.sun_direction = dvec3(0, 0, 1);
+    m.sun_seen.assign(m.vertices.size(), {{51, 255}});
+    const std::vector<EffectGroup> groups = groups_of(std::vector<model::EffectMask>{effect_sun | effect_shadow, effect_shadow});
+    const EffectWorth worth(m, groups, {}, sky);
+    const dvec3 by_sun(0.56F, 0.53F, 0.47F), half = 0.5 * (dvec3(0.34F, 0.32F, 0.30F) + dvec3(0.52F, 0.56F, 0.62F));
+    const dvec3 with = glm::min(half + 0.2 * by_sun, dvec3(1)), without = glm::min(half + by_sun, dvec3(1));
+    EXPECT_NEAR(loss_at(worth, 1, node, 0), mean_square(with - without), 1e-4);
+    EXPECT_NEAR(loss_at(worth, 0, node, 0), mean_square(with - dvec3(1)), 1e-4) << "without the sun there is no shadow either";
+}
+
+}  // namespace
+}  // namespace surefoot

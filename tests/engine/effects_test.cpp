@@ -1,0 +1,228 @@
+// Effects as items of a frame's budget: bought by value per us, charged as predicted, and left out without flicker.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "render/effect_lever.hpp"
+#include "tests/engine/forest_engine.hpp"
+#include "tests/select/count_malloc.hpp"
+
+namespace surefoot {
+namespace {
+
+using model::effect_fog, model::effect_sun;
+using test::ample_us;
+
+constexpr std::size_t sun = 0, fog = 1;  // of the switches
+
+/// A forest in fog, baked once.
+const model::Model& foggy_forest() {
+    static const model::Model forest = [] {
+        auto scene = scenes::generate("forest", 0.2, 1);
+        EXPECT_TRUE(scene.ok());
+        auto baked = bake::bake(scene->scene, {}, {});
+        EXPECT_TRUE(baked.ok());
+        for (model::Material& material : baked->materials) material.effects |= effect_fog;
+        for (model::Representation& rep : baked->reps) rep.effects |= effect_fog;
+        baked->light.fog_visibility_m = 200;
+        return std::move(*baked);
+    }();
+    return forest;
+}
+
+/// The forest in sun and fog. Prices in ns a pixel.
+struct EffectForest {
+    std::unique_ptr<Engine> engine;
+    prepare::PreparedFrame set;
+
+    explicit EffectForest(float sun_ns, float fog_ns, bool buys = true) {
+        model::CostModel costs = model::default_costs();
+        costs.prices = {{effect_sun, 0, 0, sun_ns}, {effect_fog, 0, 0, fog_ns}};
+        EngineOptions options;
+        options.device.kind = gl::BackendKind::null;
+        options.device.switches = {effect_sun, effect_fog};
+        options.buys_effects = buys;
+        auto opened = Engine::open(foggy_forest(), costs, options);
+        EXPECT_TRUE(opened.ok());
+        engine = std::move(*opened);
+        engine->reserve(set);
+        prepare();
+    }
+    void prepare() { engine->prepare({test::forest_pose(*engine), 0, 0}, 0, 0, 0, set); }
+    /// Predicted and charged, us.
+    std::pair<double, double> draw(double budget_us) {
+        engine->device().draws.plays();
+        engine->select(set, budget_us, {}, 0);
+        const double before = engine->device().charged_us();
+        report = engine->submit(test::forest_pose(*engine), {.elapsed_us = 0, .limit_us = ample_us});
+        return {report.predicted_us, engine->device().charged_us() - before};
+    }
+    [[nodiscard]] EffectSale sale(std::size_t i) const { return engine->effect_sales()[i]; }
+    SubmitReport report;
+};
+
+TEST(EngineEffects, WithTimeForAllAreShownChargedAndPredicted) {
+    EffectForest f(0.5F, 0.25F);
+    EXPECT_EQ(f.set.without, effect_sun | effect_fog) << "forms are priced without what is bought beside them";
+    EXPECT_GT(f.set.effect_value[sun], 0);
+    EXPECT_GT(f.set.effect_value[fog], 0);
+    EXPECT_LE(f.set.effect_value[sun], 1.001F * f.set.curve.full_value) << "no more than all that is seen";
+    const auto [predicted, charged] = f.draw(ample_us);
+    EXPECT_NEAR(predicted, charged, 1e-4 * charged);
+    EXPECT_EQ(f.report.bought_items, 2U);
+    for (const std::size_t i : {sun, fog}) {
+        EXPECT_FALSE(f.sale(i).dropped);
+        EXPECT_GT(f.sale(i).rate, 0);
+    }
+    EffectForest always(0.5F, 0.25F, false);
+    EXPECT_TRUE(always.engine->effect_sales().empty());
+    EXPECT_EQ(always.set.without, 0U);
+    EXPECT_EQ(always.set.effect_value[sun], 0);
+    EXPECT_NEAR(always.draw(ample_us).first, predicted, 0.01 * predicted) << "the same, but for the ends of slices";
+}
+
+TEST(EngineEffects, TheOneOfTheLeastValuePerMicrosecondGoesFirst) {
+    EffectForest f(0.5F, 0.25F);
+    const double full_us = f.draw(ample_us).first;
+    std::vector<std::size_t> order;
+    std::array<float, 2> rate{};
+    for (double budget_us = full_us * 1.3; budget_us > 0.1 * full_us && order.size() < 2; budget_us *= 0.97) {
+        const auto [predicted, charged] = f.draw(budget_us);
+        EXPECT_NEAR(predicted, charged, 1e-4 * charged);
+        for (const std::size_t i : {sun, fog}) {
+            if (!f.sale(i).fell) continue;
+            order.push_back(i);
+            EXPECT_TRUE(f.sale(i).dropped);
+        }
+        if (order.empty()) rate = {f.sale(sun).rate, f.sale(fog).rate};
+    }
+    ASSERT_FALSE(order.empty()) << "a fifth of the time is enough for none";
+    EXPECT_EQ(order.front(), rate[sun] < rate[fog] ? sun : fog);
+    // The other way round where the other one is dear.
+    EffectForest g(order.front() == sun ? 0.01F : 30.0F, order.front() == sun ? 30.0F : 0.01F);
+    const double all_us = g.draw(ample_us).first;
+    std::size_t first = 2;
+    for (double budget_us = all_us * 1.3; budget_us > 0.02 * all_us && first == 2; budget_us *= 0.9) {
+        g.draw(budget_us);
+        for (const std::size_t i : {sun, fog})
+            if (g.sale(i).fell) first = i;
+    }
+    EXPECT_EQ(first, order.front() == sun ? fog : sun);
+}
+
+TEST(EngineEffects, FormsHaveTheTimeOfTheOneThatIsLeftOut) {
+    EffectForest f(0.0F, 40.0F), always(0.0F, 40.0F, false);
+    EffectForest cheap(0.0F, 0.0F);
+    const double budget_us = 1.2 * cheap.draw(ample_us).first;
+    const auto [predicted, charged] = f.draw(budget_us);
+    EXPECT_TRUE(f.sale(fog).dropped);
+    EXPECT_EQ(f.sale(sun).rate, 0) << "what costs nothing is no item";
+    EXPECT_FALSE(f.sale(sun).dropped);
+    EXPECT_NEAR(predicted, charged, 1e-4 * charged);
+    EXPECT_LE(predicted, budget_us);
+    always.draw(budget_us);
+    EXPECT_GT(f.report.triangles, always.report.triangles);
+    EXPECT_GT(f.report.value, always.report.value);
+}
+
+TEST(EngineEffects, ADroppedOneStaysAwayForSecondsAndLongerEachTime) {
+    EffectForest f(0.0F, 1.0F);
+    const double full_us = f.draw(ample_us).first;
+    std::vector<std::uint32_t> away;
+    for (int fall = 0; fall < 4; ++fall) {
+        f.draw(0.15 * full_us);
+        ASSERT_TRUE(f.sale(fog).dropped && f.sale(fog).fell) << fall;
+        std::uint32_t frames = 0;
+        for (; f.sale(fog).dropped; ++frames) {
+            ASSERT_LT(frames, 10'000U);
+            f.draw(ample_us);
+            ASSERT_FALSE(f.sale(fog).fell);
+        }
+        away.push_back(frames);
+    }
+    EXPECT_EQ(away, (std::vector<std::uint32_t>{90, 180, 360, 720})) << "it came back for a frame each time";
+    for (std::uint32_t i = 0; i < 8 * 720; ++i) f.draw(ample_us);
+    f.draw(0.15 * full_us);
+    std::uint32_t frames = 0;
+    for (; f.sale(fog).dropped; ++frames) f.draw(ample_us);
+    EXPECT_EQ(frames, 90U) << "it had stayed long";
+}
+
+TEST(EngineEffects, AtAnyBudgetNoneComesAndGoesFromFrameToFrame) {
+    EffectForest f(0.4F, 0.4F);
+    const double full_us = f.draw(ample_us).first;
+    std::array<std::uint32_t, 2> changed_at{};
+    std::array<bool, 2> was{false, false};
+    int changes = 0;
+    for (std::uint32_t i = 1; i < 3000; ++i) {
+        f.draw(full_us * (0.55 + 0.45 * std::sin(0.37 * i) * std::sin(0.011 * i)));
+        for (const std::size_t e : {sun, fog}) {
+            if (f.sale(e).dropped == was[e]) continue;
+            was[e] = f.sale(e).dropped;
+            ++changes;
+            EXPECT_TRUE(was[e] || i - changed_at[e] >= 90U) << "frame " << i;
+            changed_at[e] = i;
+        }
+    }
+    EXPECT_GT(changes, 2);
+    EXPECT_LT(changes, 40);
+}
+
+TEST(EngineEffects, WhatIsSwitchedOffIsNeitherPricedNorBought) {
+    EffectForest f(0.5F, 0.25F), always(0.5F, 0.25F, false);
+    for (EffectForest* const forest : {&f, &always}) {
+        const double with = forest->draw(ample_us).first;
+        forest->engine->device().draws.plays();
+        forest->engine->hide_effects(effect_fog);
+        forest->prepare();
+        const auto [predicted, charged] = forest->draw(ample_us);
+        EXPECT_LT(predicted, 0.99 * with);
+        EXPECT_NEAR(predicted, charged, 1e-4 * charged);
+        forest->engine->select_last();
+        forest->engine->device().draws.plays();
+        const double before = forest->engine->device().charged_us();
+        const SubmitReport last =
+            forest->engine->submit(test::forest_pose(*forest->engine), {.elapsed_us = 0, .limit_us = ample_us});
+        EXPECT_NEAR(last.predicted_us, forest->engine->device().charged_us() - before, 1e-4 * last.predicted_us);
+    }
+    EXPECT_EQ(f.sale(fog).rate, 0);
+    EXPECT_FALSE(f.sale(fog).dropped) << "a visitor's choice is no lack of time";
+    EXPECT_GT(f.sale(sun).rate, 0);
+    EXPECT_EQ(always.set.without, effect_fog);
+}
+
+TEST(EngineEffects, WithoutBudgetAllAreShownAndPricedWithTheForms) {
+    EffectForest f(0.5F, 0.25F);
+    ASSERT_TRUE(f.engine->set_selector("distance").ok());
+    f.prepare();
+    EXPECT_EQ(f.set.without, 0U);
+    const auto [predicted, charged] = f.draw(1);
+    EXPECT_NEAR(predicted, charged, 1e-4 * charged);
+    for (const std::size_t i : {sun, fog}) EXPECT_FALSE(f.sale(i).dropped);
+}
+
+TEST(EngineEffects, GreedyChoosesTheRenderingOfTheFrame) {
+    EffectForest f(0.01F, 40.0F);
+    ASSERT_TRUE(f.engine->set_selector("greedy").ok());
+    f.prepare();
+    const double full_us = f.draw(ample_us).first;
+    EXPECT_FALSE(f.sale(fog).dropped);
+    f.draw(0.3 * full_us);
+    EXPECT_TRUE(f.sale(fog).dropped);
+    EXPECT_FALSE(f.sale(sun).dropped) << "it shows more for its time than the last objects";
+}
+
+TEST(EngineEffects, AreBoughtWithoutAnAllocation) {
+    EffectForest f(0.4F, 0.4F);
+    const double full_us = f.draw(ample_us).first;
+    f.draw(0.3 * full_us);
+    const std::uint64_t before = test::allocations();
+    for (int i = 0; i < 10; ++i) f.draw((0.2 + 0.2 * i) * full_us);
+    EXPECT_EQ(test::allocations(), before);
+}
+
+}  // namespace
+}  // namespace surefoot
