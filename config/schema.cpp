@@ -121,6 +121,10 @@ std::vector<Entry> light_entries() {
         number("hour", "h", -1, 24, "Hour of the day that the light is of, by the sun; -1: the model's own light.", &S::hour),
         number("hour_speed", "h/min", -600, 600, "Hours of the day that pass in a minute of the walk; 0: none. It needs an hour.",
                &S::hour_speed),
+        flag("buy_effects",
+             "Where time is short, a frame leaves out sunlight, shadows, lamps or fog, if forms show more for it; false: all are "
+             "drawn.",
+             &S::buy_effects),
     };
 }
 

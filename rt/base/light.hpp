@@ -37,6 +37,13 @@ constexpr std::array<Switch, 4> light_switches = {{
 }};
 constexpr std::size_t switch_count = light_switches.size();
 
+/// A switch's part of the light, where frames buy it.
+struct DroppedPart {
+    bool dropped = false;  ///< it would show something, and there was no time for it
+    bool fell = false;     ///< in this frame
+    float fell_at = 0;     ///< of a dropped one: its value per us, in pixels, when it fell
+};
+
 /// ShownLight::hour where the model's own light is shown.
 constexpr float no_hour = std::numeric_limits<float>::quiet_NaN();
 
@@ -47,6 +54,13 @@ struct ShownLight {
 };
 
 inline bool has_hour(const ShownLight& light) { return !std::isnan(light.hour); }
+
+/// What is left on of it.
+constexpr Switches parts_left(Switches on, const std::array<DroppedPart, switch_count>& parts) {
+    for (std::size_t i = 0; i < switch_count; ++i)
+        if (parts[i].dropped) on.*light_switches[i].on = false;
+    return on;
+}
 
 /// What is drawn after so many presses. `at_first`: before the first.
 constexpr Switches switched(const Switches& at_first, const SwitchPresses& presses) {

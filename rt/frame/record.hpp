@@ -99,6 +99,7 @@ struct FrameRecord {
     ShownBy shown_by = ShownBy::nothing;
     bool at_rest = false;  ///< no cut was drawn: the shown picture stays, or full detail replaces it
     ShownLight light;      ///< of the walk's frames
+    std::array<DroppedPart, switch_count> dropped_parts{};  ///< of the light, by light_switches; where frames buy them
     bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss
     Cause cause = Cause::none;
     std::uint32_t block = 0;              ///< control blocks: number of the 2 s block

@@ -165,6 +165,32 @@ TEST(Compare, SettingsWalkInTurnsUnderTheirNamesAndNoValueIsShared) {
     EXPECT_NE(table.find("resolution=50,hysteresis=1.5"), std::string::npos) << table;
 }
 
+TEST(Compare, NamesWhatTheLightLostFirstAndAtWhichValue) {
+    FakeWalks walks{{}, {30, 31}};
+    CompareRequest request = request_of({"threshold"}, 1);
+    request.settings = {{"as set", request.walk}, {"buy_effects=true", request.walk}};
+    const auto c =
+        compare_selectors(request,
+                          [&](const walk::WalkRequest& one, const Progress&) {
+                              auto outcome = walks(one);
+                              if (walks.walked.size() == 2)
+                                  outcome->summary.dropped_parts = {{"fog", 40, 2, 12, 0.25}, {"shadows", 9, 1, 70, 1.5}};
+                              return outcome;
+                          },
+                          nullptr, {});
+    ASSERT_TRUE(c.ok());
+    const auto json = nlohmann::json::parse(compare_json(*c))["settings"];
+    EXPECT_TRUE(json[0]["dropped_parts"].empty());
+    ASSERT_EQ(json[1]["dropped_parts"].size(), 2U);
+    EXPECT_EQ(json[1]["dropped_parts"][0]["part"], "fog");
+    EXPECT_EQ(json[1]["dropped_parts"][0]["first_frame"], 12);
+    EXPECT_EQ(json[1]["dropped_parts"][0]["value_per_us"], 0.25);
+    EXPECT_EQ(json[1]["dropped_parts"][1]["times"], 1);
+    const std::string line = "buy_effects=true: drops fog from frame 12 on, at 0.25 px/us; 40 frames without, dropped 2 times\n";
+    EXPECT_NE(compare_table(*c).find(line), std::string::npos) << compare_table(*c);
+    EXPECT_EQ(compare_table(*c).find("as set: drops"), std::string::npos);
+}
+
 TEST(Compare, AWalkWithoutPicturesAndAStopAreErrors) {
     FakeWalks walks{{}, {20, 20}};
     walks.pictures = 0;

@@ -109,6 +109,14 @@ TEST(View, TopShowsRatesSlotsAndCauses) {
     EXPECT_NE(top_line(before, now, 1).find("walking - frames/s"), std::string::npos) << top_line(before, now, 1);
 }
 
+TEST(View, TopNamesThePartsOfTheLightThatTheFrameHadNoTimeFor) {
+    json now = viewed_status(350);
+    EXPECT_TRUE(now["now"]["dropped_parts"].is_array() && now["now"]["dropped_parts"].empty());
+    EXPECT_EQ(joined(top_page(now, now, 1, a_style(100, 30))).find("no time for"), std::string::npos);
+    now["now"]["dropped_parts"] = {"shadows", "lamps"};
+    EXPECT_NE(joined(top_page(now, now, 1, a_style(100, 40))).find("no time for shadows, lamps"), std::string::npos);
+}
+
 TEST(View, ASkippedSlotIsAColumnOfItsOwn) {
     const json frames = json::parse("[[5.0, 0, false], [25.0, 0, true], [10.0, 2, false]]");
     const auto chart = frame_chart(frames, 20, {}, 6, 5);

@@ -36,6 +36,8 @@ TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     records[1].input_reports = 17;
     records[1].stopped = true;
     records[1].light = {{true, false, true, false}, 17.5F};
+    records[1].dropped_parts[2] = {true, true, 0.125F};
+    records[1].dropped_parts[0] = {true, false, 3};
     ASSERT_TRUE(write_ledger(in("l.csv"), records).ok());
     const auto lines = test::split(*read_text(in("l.csv")), '\n');
     ASSERT_EQ(lines.size(), records.size() + 1);
@@ -62,6 +64,8 @@ TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     EXPECT_EQ(miss["cut_hash"], "0000000000001235");
     EXPECT_EQ(miss["sunlight"] + miss["shadows"] + miss["lamps"] + miss["fog"], "1010");
     EXPECT_EQ(miss["hour"], "17.5000");
+    EXPECT_EQ(miss["dropped_parts"], "sunlight lamps");
+    EXPECT_EQ(miss["fell_at"], "lamps:0.125") << "the sunlight went before";
     const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), "hour") - names.begin());
     EXPECT_EQ(test::split(lines[1], ',').at(at), "") << "the model's own light";
     for (const auto& line : lines) EXPECT_EQ(test::split(line, ',').size(), names.size());

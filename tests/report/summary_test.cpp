@@ -208,7 +208,9 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                                    "shown_error_us",
                                    "animation_error_ms",
                                    "one_percent_low_hz",
-                                   "display"}));
+                                   "display",
+                                   "dropped_parts"}));
+    EXPECT_TRUE(json["dropped_parts"].is_array() && json["dropped_parts"].empty());
     EXPECT_TRUE(json["display"].is_null()) << "it reported nothing";
     for (const char* shown : {"shown_by", "shown_interval_ms", "shown_error_us", "animation_error_ms", "one_percent_low_hz"})
         EXPECT_TRUE(json[shown].is_null()) << shown << ": nothing was shown, so nothing is said of it";

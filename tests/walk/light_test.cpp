@@ -133,11 +133,13 @@ protected:
         scene.square(scene.material(test::plain(0.8F, 0.7F, 0.6F, 1, sun | fog)), test::at(0, 0, -2), 1);
         model::Model model = scene.finish();
         model.light.fog_visibility_m = 4;
+        model.effects = {{sun, true, 2, "", true}, {fog, true, 2, "", true}};
         EngineOptions options;
         options.device.viewport = {64, 48};
         options.device.switches = switch_groups(request_, true, sun | fog);
         options.rest_after_ms = rest_after_ms;
-        auto opened = Engine::open(std::move(model), model::default_costs(), options);
+        options.buys_effects = request_.buy_effects;
+        auto opened = Engine::open(std::move(model), costs_, options);
         ASSERT_TRUE(opened.ok()) << opened.error().text();
         engine_ = std::move(*opened);
         engine_->device().bind();
@@ -173,6 +175,7 @@ protected:
     }
 
     WalkRequest request_;
+    model::CostModel costs_ = model::default_costs();
     Path path_;
     std::unique_ptr<Engine> engine_;
     rt::VirtualClock clock_;
@@ -255,6 +258,61 @@ TEST_F(LightWalk, AnHourThatRunsIsShownAtRestToo) {
         engine_->draw_unbudgeted(path_.samples[0].pose, engine_->full_detail(path_.samples[0].pose));
         EXPECT_EQ(picture(), shown) << "slot " << slot << " shows the light of another hour";
     }
+}
+
+TEST_F(LightWalk, APartThatIsTooDearIsDroppedAndSnapshotsDrawTheirFramesPicture) {
+    request_.fog = false;
+    open();
+    frame(0);
+    const Pixels foggy_off = picture();
+    request_.fog = true;
+    request_.buy_effects = true;
+    costs_.prices = {{fog, 0, 0, 1e5F}};
+    open();
+    const rt::FrameRecord dropping = frame(0);
+    constexpr std::size_t fog_part = 3;
+    EXPECT_TRUE(dropping.dropped_parts[fog_part].dropped);
+    EXPECT_TRUE(dropping.dropped_parts[fog_part].fell);
+    EXPECT_GT(dropping.dropped_parts[fog_part].fell_at, 0);
+    EXPECT_FALSE(dropping.dropped_parts[0].dropped) << "the sun costs nothing";
+    EXPECT_TRUE(dropping.light.on.fog) << "nobody switched it off";
+    EXPECT_EQ(picture(), foggy_off);
+    const rt::FrameRecord later = frame(1);
+    EXPECT_TRUE(later.dropped_parts[fog_part].dropped);
+    EXPECT_FALSE(later.dropped_parts[fog_part].fell) << "it was gone";
+    EXPECT_EQ(later.dropped_parts[fog_part].fell_at, dropping.dropped_parts[fog_part].fell_at);
+    ASSERT_EQ(snapshots_->used(), 2U);
+    const auto drawn_again = render_snapshot(*engine_, snapshots_->snapshots()[1]);
+    ASSERT_TRUE(drawn_again.ok());
+    EXPECT_EQ(drawn_again->walk, foggy_off);
+    EXPECT_NE(drawn_again->full, foggy_off) << "full detail has all that is switched on";
+    EXPECT_GT(drawn_again->mse, 0) << "what was dropped counts as lost";
+}
+
+TEST(Light, AWalkValuesItsEffectsAtItsHours) {
+    config::Settings settings;
+    EXPECT_TRUE(effect_hours(settings).empty()) << "the model's own light";
+    settings.hour = 18.51;
+    EXPECT_EQ(effect_hours(settings), std::vector<double>{18.5});
+    settings.hour_speed = 1;
+    const std::vector<double> all = effect_hours(settings);
+    ASSERT_EQ(all.size(), 25U);
+    EXPECT_EQ(all.front(), 0);
+    EXPECT_EQ(all.back(), 24);
+}
+
+TEST(Light, DroppedPartsAreThoseOfTheModelsGroups) {
+    const model::EffectMask called_for = sun | shadow | fog;
+    const std::vector<EffectSale> sales{{sun | shadow, 2, false, false}, {shadow, 0.5F, true, true}, {fog, 1, true, false}};
+    const auto parts = dropped_parts(sales, called_for);
+    EXPECT_FALSE(parts[0].dropped);
+    EXPECT_TRUE(parts[1].dropped);
+    EXPECT_EQ(parts[1].fell_at, 0.5F);
+    EXPECT_FALSE(parts[2].dropped) << "it has no lamps";
+    EXPECT_TRUE(parts[3].dropped);
+    EXPECT_FALSE(parts[3].fell) << "in an earlier frame";
+    EXPECT_EQ(parts[3].fell_at, 1);
+    EXPECT_EQ(rt::parts_left({true, true, false, true}, parts), (rt::Switches{true, false, false, false}));
 }
 
 }  // namespace

@@ -55,6 +55,7 @@ ComparedSelector medians(const std::string& selector, const Summaries& rounds) {
     c.frame_ms_p99 = median([](const auto& s) { return s.frame_ms.p99; });
     c.unused_ms = median([](const auto& s) { return s.unused_ms.mean; });
     c.switches_per_frame = median([](const auto& s) { return s.switches_per_frame; });
+    c.dropped_parts = rounds.front().dropped_parts;
     for (const report::WalkSummary& s : rounds) {
         c.frames += s.frames;
         c.misses += s.misses;
@@ -192,6 +193,17 @@ nlohmann::ordered_json triangles_json(const ComparedSelector& s) {
             {"snr_db", {{"min", report::rounded(figures.snr_min_db)}, {"max", report::rounded(figures.snr_max_db)}}}};
 }
 
+nlohmann::ordered_json dropped_parts_json(const ComparedSelector& s) {
+    auto list = nlohmann::ordered_json::array();
+    for (const report::DroppedSummary& part : s.dropped_parts)
+        list.push_back({{"part", part.part},
+                        {"frames", part.frames},
+                        {"times", part.falls},
+                        {"first_frame", part.first_frame},
+                        {"value_per_us", report::rounded(part.first_value_per_us)}});
+    return list;
+}
+
 std::string triangles_line(const ComparedSelector& s) {
     const TriangleFigures figures = triangle_figures(s);
     const std::string snr = figures.snr_min_db <= figures.snr_max_db
@@ -201,6 +213,11 @@ std::string triangles_line(const ComparedSelector& s) {
 }
 
 }  // namespace
+
+std::string dropped_words(const report::DroppedSummary& part) {
+    return fmt::format("{} from frame {} on, at {:.3g} px/us; {} frames without, dropped {} {}", part.part, part.first_frame,
+                       part.first_value_per_us, part.frames, part.falls, part.falls == 1 ? "time" : "times");
+}
 
 std::string budget_text(const Comparison& c) {
     return c.in_triangles ? fmt::format("{} triangles", triangles_of_budget(c.budget_ms)) : fmt::format("{:.1f} ms", c.budget_ms);
@@ -229,6 +246,7 @@ std::string compare_json(const Comparison& c) {
                              {"coarse_frames", s.coarse_frames},
                              {"floor_frames", s.floor_frames},
                              {"dropped_per_frame", rounded(s.dropped_per_frame)},
+                             {"dropped_parts", dropped_parts_json(s)},
                              {"triangles", triangles_json(s)}});
     const Json json = {{"model", c.model},
                        {"path", c.path},
@@ -297,6 +315,9 @@ std::string compare_table(const Comparison& c) {
     for (const ComparedSelector& s : c.selectors)
         if (s.dropped_per_frame > 0)
             out += fmt::format("{}: leaves out {:.1f} visible objects a frame\n", s.selector, s.dropped_per_frame);
+    for (const ComparedSelector& s : c.selectors)
+        for (const report::DroppedSummary& part : s.dropped_parts)
+            out += fmt::format("{}: drops {}\n", s.selector, dropped_words(part));
     if (c.value.frames > 0)
         out += fmt::format(
             "value: {} frames off line; the greatest is proven for {}; bounds are {:.2f} % above the best in the mean\n",

@@ -39,6 +39,7 @@ struct ComparedSelector {
     double frame_ms_p50 = 0, frame_ms_p99 = 0, unused_ms = 0, switches_per_frame = 0;
     std::uint64_t frames = 0, misses = 0, coarse_frames = 0, floor_frames = 0;  ///< sums
     std::vector<report::PictureFigures> pictures;                               ///< of the first round
+    std::vector<report::DroppedSummary> dropped_parts;                          ///< of the light, in the first round
     double dropped_per_frame = 0;                                               ///< visible objects that were left out
     bool goes_by_budget = true;                                                 ///< else no share of a budget's value is stated
     ValueShare value;                                                           ///< of the frames in Comparison::value
@@ -83,6 +84,9 @@ std::string compare_table(const Comparison& comparison);
 
 /// "200 triangles", or "26.7 ms".
 std::string budget_text(const Comparison& comparison);
+
+/// "shadows from frame 12 on, at 0.2 px/us; 40 frames without, dropped 1 time"
+std::string dropped_words(const report::DroppedSummary& part);
 
 /// Whether the page could be written to `dir` now. Call it before the walks.
 Result<void> probe_compare_page(const std::string& dir);

@@ -69,13 +69,21 @@ std::string chart_file_of(const Comparison& c) {
         report::open_chart(strip_width, y + 8, "Pictures of a comparison") + charts + report::close_chart(), false);
 }
 
+/// What the walk left out of the light, in the order in which it went.
+std::string dropped_list(const ComparedSelector& of) {
+    if (of.dropped_parts.empty()) return {};
+    std::string out = "<p>Parts of the light that were left out where forms showed more for the time:</p><ol>";
+    for (const report::DroppedSummary& part : of.dropped_parts) out += "<li>" + report::escaped(dropped_words(part)) + "</li>";
+    return out + "</ol>\n";
+}
+
 std::string body_of(const Comparison& c) {
     std::string out = fmt::format(
         "<header><p class=\"brand\"><b>Surefoot</b> · comparison</p><h1>{}</h1>"
         "<p class=\"lead\">{} pictures of one walk, {}x{} at {:.4g} Hz, {} a frame.</p></header>\n",
         report::escaped(c.model), c.pictures, c.width, c.height, c.rate_hz, budget_text(c));
     for (const ComparedSelector& s : c.selectors) {
-        out += fmt::format("<h2>{}</h2>\n", report::escaped(s.selector));
+        out += fmt::format("<h2>{}</h2>\n", report::escaped(s.selector)) + dropped_list(s);
         for (const Shown& what : charted) {
             const std::string chart = chart_of(s, what, c.rate_hz);
             out += chart.empty() ? fmt::format("<p>{}: every picture equals full detail.</p>\n", what.label)

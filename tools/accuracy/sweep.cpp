@@ -7,12 +7,14 @@
 #include <functional>
 #include <limits>
 
+#include "render/effects/effects.hpp"
 #include "render/engine.hpp"
 #include "render/measure/flip.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/statistics.hpp"
 #include "rt/clock/clock.hpp"
+#include "tools/accuracy/effect_ways.hpp"
 #include "tools/report/report.hpp"
 #include "tools/walk/frame_share.hpp"
 #include "tools/walk/path_source.hpp"
@@ -250,30 +252,52 @@ Result<void> mark_change(Sweep& sweep, std::string_view change, const std::strin
     return {};
 }
 
+/// One engine with something set otherwise.
+struct ChangedEngine {
+    std::string name;
+    EngineOptions options;
+    model::EffectMask hidden = 0;
+};
+
+/// The options above, then each effect of the model that has a price of its own, off.
+std::vector<ChangedEngine> changed_engines(model::EffectMask effects_of_model) {
+    std::vector<ChangedEngine> out;
+    for (const Change& change : changes) {
+        out.push_back({std::string(change.name), {}});
+        change.set(out.back().options);
+    }
+    for (const effects::EffectModule& module : effects::all_effects()) {
+        if (module.priced_on == 0 || (effects_of_model & module.bit) == 0) continue;
+        out.push_back({"no " + std::string(module.name), {}, module.bit});
+        out.back().options.device.switches = {module.bit};
+    }
+    return out;
+}
+
 /// As swept, then with one option at a time set otherwise. Each has an engine of its own, since options are fixed when one is
 /// opened.
 Result<void> sweep_changes(Sweep& as_swept, const AccuracyRequest& request, const Progress& progress, AccuracyRun& run) {
     const std::string selector = changed_selector(request.selectors);
     if (selector.empty()) return {};
     if (auto ok = mark_change(as_swept, "as swept", selector, run); !ok) return ok;
-    for (std::size_t i = 0; i < changes.size(); ++i) {
+    const std::vector<ChangedEngine> engines = changed_engines(effects_of_materials(as_swept.engine.model()));
+    for (std::size_t i = 0; i < engines.size(); ++i) {
         if (progress.stopped()) return Error{request.model_file, "The sweep was stopped by the user", "", ErrorKind::stopped};
-        progress.update(std::string(changes[i].name), static_cast<double>(i) / static_cast<double>(changes.size()));
+        progress.update(engines[i].name, static_cast<double>(i) / static_cast<double>(engines.size()));
         model::WalkFileInfo file;
         auto model = model::read_walk(request.model_file, &file);
         if (!model) return model.error();
-        EngineOptions options;
-        changes[i].set(options);
-        auto engine = open_engine(request, std::move(*model), file.hash, options, run);
+        auto engine = open_engine(request, std::move(*model), file.hash, engines[i].options, run);
         if (!engine) return engine.error();
         (*engine)->device().bind();
+        (*engine)->hide_effects(engines[i].hidden);
         Sweep sweep{**engine, std::vector<Station>(as_swept.stations.size()), as_swept.repeats};
         for (std::size_t s = 0; s < sweep.stations.size(); ++s) {
             sweep.stations[s].pose = as_swept.stations[s].pose;
             sweep.stations[s].full = as_swept.stations[s].full;
             (*engine)->reserve(sweep.stations[s].prepared);
         }
-        auto marked = mark_change(sweep, changes[i].name, selector, run);
+        auto marked = mark_change(sweep, engines[i].name, selector, run);
         (*engine)->device().release();
         if (!marked) return marked;
     }

@@ -102,6 +102,14 @@ ordered_json totals_json(const Figures& f) {
     return j;
 }
 
+/// Parts of the light that the frame had no time for.
+ordered_json dropped_json(const rt::FrameRecord& frame) {
+    ordered_json names = ordered_json::array();
+    for (std::size_t i = 0; i < rt::switch_count; ++i)
+        if (frame.dropped_parts[i].dropped) names.push_back(std::string(rt::light_switches[i].name));
+    return names;
+}
+
 ordered_json times_json(const Figures& f) {
     constexpr double to_ms = 1e6, to_us = 1e3;  // divided by: 33333333 ns are 33.333333 ms, no digit more
     ordered_json j;
@@ -208,6 +216,7 @@ std::string status_json(const MonitorPage& p) {
                 {"filter", f.frames > 0 ? ordered_json(rt::name_of(f.last.filter)) : ordered_json(nullptr)},
                 {"at_rest", f.last.at_rest},
                 {"rest_samples", f.last.rest_samples},
+                {"dropped_parts", dropped_json(f.last)},
                 {"triangles", f.last.triangles},
                 {"nodes", f.last.items},
                 {"standing_still", f.last.stopped}};

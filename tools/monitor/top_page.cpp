@@ -25,6 +25,16 @@ double rate_of(const json& s, const json& before, double between_s, const char* 
 
 std::string rate_text(double rate) { return std::isnan(rate) ? "-" : fmt::format("{:.{}f}", rate, rate < 9.95 ? 1 : 0); }
 
+/// The texts of a list, between commas.
+std::string joined_at(const json& s, const char* pointer) {
+    std::string out;
+    const json::json_pointer at(pointer);
+    if (!s.contains(at) || !s.at(at).is_array()) return out;
+    for (const json& text : s.at(at))
+        if (text.is_string()) out += (out.empty() ? "" : ", ") + text.get<std::string>();
+    return out;
+}
+
 /// `left` and `right` at the two ends of the line.
 std::string spread(const std::string& left, const std::string& right, std::size_t width) {
     const std::size_t used = places(left) + places(right);
@@ -121,6 +131,8 @@ void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::stri
     if (number_at(s, "/totals/trilinear_frames") > 0)
         lines.push_back(fmt::format("filter   {}, {} frames with two mip levels", text_at(s, "/now/filter"),
                                     grouped(number_at(s, "/totals/trilinear_frames"))));
+    if (const std::string dropped = joined_at(s, "/now/dropped_parts"); !dropped.empty())
+        lines.push_back("no time for " + dropped);
     if (number_at(s, "/now/samples") > 1) lines.push_back(fmt::format("samples {:.0f} a pixel", number_at(s, "/now/samples")));
 }
 

@@ -108,6 +108,17 @@ Json worst_forms_of(const std::vector<WorstForm>& forms) {
     return list;
 }
 
+Json dropped_of(const std::vector<DroppedSummary>& parts) {
+    Json list = Json::array();
+    for (const DroppedSummary& part : parts)
+        list.push_back({{"part", part.part},
+                        {"frames", part.frames},
+                        {"times", part.falls},
+                        {"first_frame", part.first_frame},
+                        {"value_per_us", rounded(part.first_value_per_us)}});
+    return list;
+}
+
 /// Null where no picture was compared.
 Json picture_of(const PictureSummary& p) {
     if (p.frames == 0) return nullptr;
@@ -233,6 +244,7 @@ std::string to_json(const WalkSummary& s) {
     };
     add_shown(s.shown, json);
     json["display"] = display_of(s.display);
+    json["dropped_parts"] = dropped_of(s.dropped_parts);
     if (s.guarantee.accuracy > 0) json["guarantee"] = guarantee_of(s.guarantee);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -25,8 +25,20 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
     fmt::format_to(std::back_inserter(row), format, std::forward<Args>(args)...);
 }
 
+/// Names of the dropped parts of the light, between blanks; or of those that this frame dropped, each with its value per us.
+void put_dropped(fmt::memory_buffer& row, const FrameRecord& f, bool fell) {
+    const char* between = "";
+    for (std::size_t i = 0; i < rt::switch_count; ++i) {
+        const rt::DroppedPart& part = f.dropped_parts[i];
+        if (!part.dropped || (fell && !part.fell)) continue;
+        add(row, "{}{}", between, rt::light_switches[i].name);
+        if (fell) add(row, ":{:.4g}", part.fell_at);
+        between = " ";
+    }
+}
+
 // clang-format off
-constexpr std::array<Column, 88> columns = {{
+constexpr std::array<Column, 90> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -106,6 +118,8 @@ constexpr std::array<Column, 88> columns = {{
     {"lamps", [](auto& r, auto& f) { add(r, "{:d}", f.light.on.lamps); }},
     {"fog", [](auto& r, auto& f) { add(r, "{:d}", f.light.on.fog); }},
     {"hour", [](auto& r, auto& f) { if (rt::has_hour(f.light)) add(r, "{:.4f}", f.light.hour); }},
+    {"dropped_parts", [](auto& r, auto& f) { put_dropped(r, f, false); }},
+    {"fell_at", [](auto& r, auto& f) { put_dropped(r, f, true); }},
     {"snapped", [](auto& r, auto& f) { add(r, "{:d}", f.snapped); }},
     {"cost_scale", [](auto& r, auto& f) { add(r, "{:.4f}", f.cost_scale); }},
     {"x", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[0]); }},

@@ -140,6 +140,15 @@ struct SeatSummary {
     double fov_x_deg = 0, fov_y_deg = 0;  ///< of a screen straight before the eye, in every pose
 };
 
+/// A part of the light that frames bought, or left out because forms showed more for the time.
+struct DroppedSummary {
+    std::string_view part;          ///< name of its switch
+    std::uint64_t frames = 0;       ///< that were drawn without it
+    std::uint64_t falls = 0;        ///< times that it was dropped
+    std::uint64_t first_frame = 0;  ///< that dropped it
+    double first_value_per_us = 0;  ///< in that frame; weighted pixels
+};
+
 /// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
@@ -157,7 +166,8 @@ struct WalkSummary {
     double cost_scale = 1;  ///< the setting
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
-    double dropped_per_frame = 0;  ///< visible objects that were left out; only by selectors that are for comparison
+    double dropped_per_frame = 0;               ///< visible objects that were left out; only by selectors that are for comparison
+    std::vector<DroppedSummary> dropped_parts;  ///< that were dropped; the one that went first comes first
     GuaranteeSummary guarantee;
     std::uint64_t rest_frames = 0, rested_frames = 0;  ///< that drew no cut; those of them that showed full detail
     std::uint32_t rest_samples = 0;                    ///< of the smoothest picture at rest

@@ -169,6 +169,28 @@ ShownSummary shown_figures(std::span<const FrameRecord* const> frames, const std
     return s;
 }
 
+/// Of parts that fell in one frame, the one of the least value per us went first.
+std::vector<DroppedSummary> dropped_parts(const std::vector<const FrameRecord*>& frames) {
+    std::vector<DroppedSummary> parts;
+    for (std::size_t i = 0; i < rt::switch_count; ++i) {
+        DroppedSummary part{rt::light_switches[i].name};
+        for (const FrameRecord* f : frames) {
+            const rt::DroppedPart& of = f->dropped_parts[i];
+            if (of.fell) ++part.falls;
+            if (!of.dropped) continue;
+            if (part.frames++ > 0) continue;
+            part.falls = std::max<std::uint64_t>(part.falls, 1);  // it may have fallen before the first frame
+            part.first_frame = f->frame;
+            part.first_value_per_us = static_cast<double>(of.fell_at);
+        }
+        if (part.frames > 0) parts.push_back(part);
+    }
+    std::stable_sort(parts.begin(), parts.end(), [](const DroppedSummary& a, const DroppedSummary& b) {
+        return a.first_frame != b.first_frame ? a.first_frame < b.first_frame : a.first_value_per_us < b.first_value_per_us;
+    });
+    return parts;
+}
+
 /// Everything that is counted up starts from zero, so that a summary can be made anew from longer records.
 void clear_counts(WalkSummary& s) {
     s.core_steal_known = false;
@@ -211,6 +233,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     resolution_figures(frames, summary);
     quality_figures(frames, summary);
     rest_figures(frames, summary);
+    summary.dropped_parts = dropped_parts(frames);
     summary.shown = shown_figures(frames, summary.late_policy);
     summary.rate_hz = 1e9 / static_cast<double>(period_ns);
     summary.seconds = static_cast<double>(summary.slots) * static_cast<double>(period_ns) * 1e-9;

@@ -71,6 +71,9 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
     if (s.unused_ms.max > 0)
         table.row("unused", fmt::format("{:.1f} ms of the period (mean), {:.1f} (p99), where value is missing", s.unused_ms.mean,
                                         s.unused_ms.p99));
+    for (const DroppedSummary& part : s.dropped_parts)
+        table.row("dropped", fmt::format("{} in {} frames, first in frame {} at {:.3g} px/us", part.part, part.frames,
+                                         part.first_frame, part.first_value_per_us));
     std::string triangles =
         fmt::format("mean {}, most {}", short_number(s.triangles_mean), short_number(static_cast<double>(s.triangles_max)));
     if (s.model_triangles > 0)

@@ -1,6 +1,8 @@
 // From switches and the hour to what the renderer draws.
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "config/settings.hpp"
@@ -23,6 +25,12 @@ constexpr int hour_steps = 30;
 
 /// The hour at a time of the walk, in steps, from 0 to below 24. rt::no_hour where the settings have none.
 float hour_at(const config::Settings& settings, double walk_s);
+
+/// EngineOptions::effect_hours of a walk: its hour, or every hour of the day where that runs.
+std::vector<double> effect_hours(const config::Settings& settings);
+
+/// Which switches' parts of the light a selection left out, by rt::light_switches.
+std::array<rt::DroppedPart, rt::switch_count> dropped_parts(std::span<const EffectSale> sales, model::EffectMask called_for);
 
 /// Draws the next pictures in this light. Without an hour, the light of before stays. Between pictures, on the thread that draws.
 void show_light(Engine& engine, const rt::ShownLight& light);

@@ -22,6 +22,7 @@ struct FrameSnapshot {
     rt::TextureFilter filter = rt::TextureFilter::automatic, last_filter = rt::TextureFilter::automatic;  ///< of last_items
     std::uint64_t triangles = 0;
     rt::ShownLight light;
+    rt::Switches parts;  ///< of it, that were drawn
     std::vector<gl::DrawItem> items;
     std::vector<gl::DrawItem> last_items;  ///< the frame before's, those outside its view included; empty: none was kept
 };
@@ -40,7 +41,7 @@ public:
     /// On the frame thread, after each frame. Frames that are not due, or beyond the store, are passed over.
     void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
                   rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
-                  std::span<const gl::DrawItem> culled = {}, const rt::ShownLight& light = {});
+                  std::span<const gl::DrawItem> culled = {}, const rt::ShownLight& light = {}, const rt::Switches& parts = {});
     [[nodiscard]] const std::vector<FrameSnapshot>& snapshots() const { return snapshots_; }
     [[nodiscard]] std::size_t used() const { return used_; }
 

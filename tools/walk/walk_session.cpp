@@ -118,7 +118,9 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others, model::Ef
     options.device.sky = config::colour_of(r.sky);
     options.device.fullscreen = r.fullscreen;
     const bool may_switch = !r.input_file.empty() || (r.may_steer && r.backend == window_input);
-    options.device.switches = switch_groups(r, may_switch, called_for);
+    options.device.switches = switch_groups(r, may_switch || r.buy_effects, called_for);
+    options.buys_effects = r.buy_effects;
+    options.effect_hours = effect_hours(r);
     options.device.null.cost_scale = r.cost_scale;
     options.device.null.noise = r.cost_noise;
     options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);

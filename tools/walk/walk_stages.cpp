@@ -60,7 +60,8 @@ WalkStages::WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock
       options_(options),
       request_(options.request),
       limit_(options.limit_us, static_cast<double>(options.period_ns) * 1e-3, options.shared_cores),
-      virtual_clock_(options.request.clock == rt::ClockKind::virtual_time) {}
+      virtual_clock_(options.request.clock == rt::ClockKind::virtual_time),
+      called_for_(engine.model().called_for()) {}
 
 Fault WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
     if (options_.inject == nullptr) return Fault::none;
@@ -272,6 +273,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     coarse_ = age > rt::oldest_prepared(options_.period_ns) || moved_on || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
         engine_.select_last();
+        record.dropped_parts = dropped_parts(engine_.effect_sales(), called_for_);
         return;
     }
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
@@ -281,6 +283,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     const double budget_us = planned_us(correction, spent_us);
     record.correction = static_cast<float>(correction.factor);
     const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
+    record.dropped_parts = dropped_parts(engine_.effect_sales(), called_for_);
     record.floor_us = cut.floor_us;
     record.floor_binds = cut.floor_binds;
     record.switches = cut.switches;
@@ -416,9 +419,11 @@ void WalkStages::account(rt::FrameRecord& record) {
     const bool follows = now_.frame > rehearsed_;  // the cut before the first frame is of the warm-up
     record.floor_frame =
         follows && !report_.at_rest && engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
+    if (report_.rest_samples > 0) record.dropped_parts = {};  // full detail has all of them
     keep(record);
     snapshots_.remember(record.frame, walk_time_s(), now_.pose, record.accuracy, record.resolution, record.filter,
-                        record.triangles, engine_.drawn(), engine_.culled(), record.light);
+                        record.triangles, engine_.drawn(), engine_.culled(), record.light,
+                        rt::parts_left(record.light.on, record.dropped_parts));
 }
 
 }  // namespace surefoot::walk

@@ -119,8 +119,9 @@ private:
     WalkStagesOptions options_;
     const WalkRequest& request_;
     FrameLimit limit_;
-    const bool virtual_clock_;     ///< prepare on this thread, and add the device's virtual time to the clock
-    rt::Corrections corrections_;  ///< by step of resolution, then those with the second mip level
+    const bool virtual_clock_;            ///< prepare on this thread, and add the device's virtual time to the clock
+    const model::EffectMask called_for_;  ///< of the model
+    rt::Corrections corrections_;         ///< by step of resolution, then those with the second mip level
     rt::Overshoot overshoot_;
     rt::FormCorrection forms_;
     PoseSample now_;
