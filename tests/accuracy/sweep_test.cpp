@@ -40,12 +40,13 @@ TEST(AccuracySweep, MarksTheBudgetOfTheRateWithOneSettingChanged) {
         EXPECT_DOUBLE_EQ(mark.point.budget_ms, run->working_ms);
     }
     ASSERT_EQ(changes, (std::vector<std::string>{"as swept", "no occlusion culling", "no focus on the middle", "gestalt 1",
-                                                 "resolution 75 %"}));
+                                                 "resolution 75 %", "no sun"}));
     const AccuracyPoint& as_swept = run->changes[0].point;
     EXPECT_EQ(as_swept.triangles, run->one_more_ms[0].now.triangles) << "the same cuts";
     EXPECT_EQ(as_swept.psnr_db, run->one_more_ms[0].now.psnr_db) << "the same pictures";
     for (std::size_t i = 2; i < run->changes.size(); ++i)
         EXPECT_NE(run->changes[i].point.psnr_db, as_swept.psnr_db) << run->changes[i].change << " changes pictures";
+    EXPECT_LT(run->changes.back().point.psnr_db, as_swept.psnr_db) << "the sun is missed";
 }
 
 TEST(AccuracySweep, StopsWhereTheUserSaysSo) {
