@@ -260,8 +260,8 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.correction = correction;
     e.begin_offers();
     e.prepay_resolution(prepared);
-    e.offer_effects(prepared, budget_us / std::max(1e-3, correction.factor));
     const select::SelectInput input = e.input_of(prepared, budget_us, correction, target_error_rad);
+    e.offer_effects(prepared, select::Budget(input).room_us());
     e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
     e.one_more_ms = e.gain_of_one_more_ms(input);

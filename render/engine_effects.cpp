@@ -46,9 +46,8 @@ model::ItemCost Engine::Impl::effects_of(model::Index rep, float surface_px, mod
     return preparer->item_costs().of_effects(rep, surface_px * drawn_resolution * drawn_resolution, effects);
 }
 
-/// By the forms of the last cut: a frame shows much of what the last one showed. Before there was one, by as much of full detail
-/// as there is time for.
-void Engine::Impl::price_groups(const prepare::PreparedFrame& set, double room_us) {
+/// By the forms of the last cut: a frame shows much of what the last one showed. Before there was one, by full detail.
+void Engine::Impl::price_groups(const prepare::PreparedFrame& set) {
     if (lever.known) return;
     lever.forms = set.full_cost;
     lever.costs = {};
@@ -58,33 +57,38 @@ void Engine::Impl::price_groups(const prepare::PreparedFrame& set, double room_u
         for (std::size_t g = 0; g < lever.count; ++g)
             lever.costs[g] += effects_of(finest.rep, finest.surface_px, lever.groups[g].own);
     }
-    const double full_us = static_cast<double>(more_us(combine(), {}, lever.forms));
-    const double share = full_us > 0 ? std::clamp(room_us / full_us, 0.0, 1.0) : 1.0;
-    lever.forms = lever.forms * static_cast<float>(share);
-    for (model::ItemCost& cost : lever.costs) cost = cost * static_cast<float>(share);
+}
+
+/// A group costs a share of the forms' time: the more of it they have, the more the group costs as well. So its price is what it
+/// takes where forms and all groups fill the budget together, or where full detail has all of them.
+void Engine::Impl::share_budget(const prepare::PreparedFrame& set, double room_us) {
+    const model::FrameCombine combine = this->combine();
+    const float forms_us = more_us(combine, {}, lever.forms), full_us = more_us(combine, {}, set.full_cost);
+    float all = 1;
+    for (std::size_t g = 0; g < lever.count; ++g) {
+        const bool for_sale = (lever.groups[g].own & ~hidden) != 0 && by_budget && set.effect_value[g] > 0.0F;
+        lever.offered_us[g] = for_sale && forms_us > 0.0F ? more_us(combine, lever.forms, lever.costs[g]) / forms_us : 0.0F;
+        all += lever.offered_us[g];
+    }
+    const float of_forms_us = std::max(1.0F, std::min(static_cast<float>(room_us) / all, full_us));
+    for (float& us : lever.offered_us) us *= of_forms_us;
 }
 
 void Engine::Impl::offer_effects(const prepare::PreparedFrame& set, double room_us) {
     if (lever.count == 0) return;
-    lever.offered_us = {};
-    price_groups(set, room_us);
-    const model::FrameCombine combine = this->combine();
+    price_groups(set);
+    share_budget(set, room_us);
     for (std::size_t g = 0; g < lever.count; ++g) {
         EffectSale& sale = lever.sales[g];
-        const EffectGroup& group = lever.groups[g];
         const EffectSale before = sale;
-        sale = {group.mask};
-        if ((group.own & ~hidden) == 0 || !by_budget) continue;
-        const float us = more_us(combine, lever.forms, lever.costs[g]), value = set.effect_value[g];
-        if (!(us > 0.0F) || !(value > 0.0F)) continue;
+        sale = {lever.groups[g].mask};
+        float& us = lever.offered_us[g];
+        if (!(us > 0.0F)) continue;
         sale.dropped = before.dropped;
-        if (before.dropped) sale.rate = before.rate;
+        sale.rate = before.dropped ? before.rate : set.effect_value[g] / us;
         EffectDwell& of_group = lever.dwell[g];
-        if (!of_group.offer()) continue;
-        const float worth_now = of_group.away() ? EffectDwell::value_share * value : value;
-        if (!offered.offer({select::ItemKind::effect, group.mask, us, worth_now})) continue;
-        if (!before.dropped) sale.rate = value / us;
-        lever.offered_us[g] = us;
+        const float worth_now = (of_group.away() ? EffectDwell::value_share : 1.0F) * set.effect_value[g];
+        if (!of_group.offer() || !offered.offer({select::ItemKind::effect, lever.groups[g].mask, us, worth_now})) us = 0;
     }
 }
 

@@ -105,7 +105,8 @@ struct Engine::Impl {
     void take_filter() REQUIRES(draws);
     void reserve_effects() REQUIRES(draws);
     void price_without() REQUIRES(draws);
-    void price_groups(const prepare::PreparedFrame& set, double room_us) REQUIRES(draws);
+    void price_groups(const prepare::PreparedFrame& set) REQUIRES(draws);
+    void share_budget(const prepare::PreparedFrame& set, double room_us) REQUIRES(draws);
     void offer_effects(const prepare::PreparedFrame& set, double room_us) REQUIRES(draws);
     void take_effects(const prepare::PreparedFrame& set) REQUIRES(draws);
     void learn_effects() REQUIRES(draws);

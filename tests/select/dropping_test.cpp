@@ -306,16 +306,19 @@ TEST(BenefitModels, KeepTheBudgetAndGuideTheSearch) {
 
 TEST(Dropping, GreedyBuysItemsInTheOrderOfItsPairs) {
     Random random(5);
-    int before = 0, after = 0;
-    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    int before = 0, after = 0, scenes = 0;
+    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
         Scene s = seen_scene(seed, 60, random);
         if (s.frame.candidates.empty()) continue;
         const double budget_us = 0.4 * double{s.run("flat", infinity).predicted_us};
+        const double room_us = Budget(s.input(budget_us)).room_us();
+        if (!(room_us > 1)) continue;
+        ++scenes;
         s.forget();
         s.run("greedy", budget_us);
         const double alone = s.cut.value;
         const auto with = [&](float rate) {
-            const auto cost_us = static_cast<float>(0.2 * budget_us);
+            const auto cost_us = static_cast<float>(0.5 * room_us);
             ItemList items;
             items.offer({ItemKind::effect, 1, cost_us, rate * cost_us});
             SelectInput input = s.input(budget_us);
@@ -331,7 +334,8 @@ TEST(Dropping, GreedyBuysItemsInTheOrderOfItsPairs) {
         }
         if (with(1e-12F)) ++after;
     }
-    EXPECT_GT(before, 30) << "a rate above all pairs' is bought first";
+    EXPECT_GT(scenes, 30);
+    EXPECT_EQ(before, scenes) << "a rate above all pairs' is bought first";
     EXPECT_LT(after, before) << "one below all of them has what they leave";
 }
 
