@@ -108,6 +108,17 @@ float loss_of_leaf(std::span<const WorthPoint> points, model::EffectMask own, co
     return areas > 0 && std::isfinite(areas) ? static_cast<float>(sum / areas) : 0.0F;
 }
 
+/// Mean square of what the points show.
+double energy_of_leaf(std::span<const WorthPoint> points, const model::Daylight& light) {
+    double sum = 0, areas = 0;
+    for (const WorthPoint& point : points) {
+        const vec3 shown = glm::clamp(point.colour * effects::light_of(point.at, point.effects, light), 0.0F, 1.0F);
+        sum += static_cast<double>(point.area) * static_cast<double>(mean_square(shown));
+        areas += static_cast<double>(point.area);
+    }
+    return areas > 0 && std::isfinite(areas) ? sum / areas : 0;
+}
+
 float size_of(const Box& box) {
     const dvec3 size = 2.0 * box.half();
     const double outline = size.x * size.y + size.y * size.z + size.z * size.x;
@@ -155,17 +166,29 @@ EffectWorth::EffectWorth(const model::Model& model, std::span<const EffectGroup>
     const auto of = [&](std::size_t moment, std::size_t group) {
         return std::span(losses_).subspan((moment * groups_.size() + group) * nodes_, nodes_);
     };
+    const model::Daylight own = model::daylight_of_model(model.sun_direction, model.light);
+    double own_energy = 0;
+    std::vector<double> energy(moments.size());
     std::vector<WorthPoint> points;
     for (std::size_t n = 0; n < nodes_; ++n) {
         if (model.nodes[n].child_count > 0) continue;
         collect_points(model, model.nodes[n], points);
+        const auto size = static_cast<double>(size_of(model.nodes[n].box));
+        own_energy += size * energy_of_leaf(points, own);
+        for (std::size_t m = 0; m < moments.size(); ++m) energy[m] += size * energy_of_leaf(points, moments[m]);
         for (std::size_t m = 0; m < moments.size(); ++m) {
             const vec3 fog = vec3(sky[0], sky[1], sky[2]) * moments[m].background;
             for (std::size_t g = 0; g < groups_.size(); ++g) of(m, g)[n] = loss_of_leaf(points, groups_[g].own, moments[m], fog);
         }
     }
-    for (std::size_t m = 0; m < moments.size(); ++m)
-        for (std::size_t g = 0; g < groups_.size(); ++g) go_up(model, of(m, g));
+    for (std::size_t m = 0; m < moments.size(); ++m) {
+        constexpr double darkest = 0.01;
+        const double bright = own_energy > 0 ? std::clamp(energy[m] / own_energy, darkest, 1.0) : 1.0;
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            for (float& loss : of(m, g)) loss /= static_cast<float>(bright);
+            go_up(model, of(m, g));
+        }
+    }
 }
 
 std::array<prepare::EffectLoss, prepare::max_effect_groups> EffectWorth::at(float hour) const {

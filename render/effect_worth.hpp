@@ -23,12 +23,14 @@ static_assert(prepare::max_effect_groups == gl::max_switches);
 std::vector<EffectGroup> groups_of(std::span<const model::EffectMask> switches);
 
 /// Differences by node, group and light. Each leaf is shaded at points of its full detail with and without the group: the mean
-/// squared difference of the colours counts. A cluster has the mean of its leaves, by their size. Constant once it is made.
+/// squared difference of the colours counts. A cluster has the mean of its leaves, by their size. Losses of forms are measured
+/// in the model's own light. So in a darker one, where forms lose less, differences count by how much darker the model is.
+/// Constant once it is made.
 class EffectWorth {
 public:
     EffectWorth() = default;
     /// hours: of the day, rising from 0 to 24, between which a light is interpolated; empty: the model's own light.
-    /// `sky`: the colour behind everything, which fog takes. Needs the model's texels. Allocates; 20 us a leaf and hour at most.
+    /// `sky`: the colour behind everything, which fog takes. Needs the model's texels. Allocates.
     EffectWorth(const model::Model& model, std::span<const EffectGroup> groups, std::span<const double> hours,
                 const std::array<float, 3>& sky);
 

@@ -132,11 +132,12 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     const double slice_end_us = static_cast<double>(e.costs.combine.submit_weight * e.costs.slice_us);
     // What is below the acuity anyway does not look softer.
     const auto sharper = static_cast<float>(prepare::resolved_rad(out) / model::pixel_angle(out.region.centre, viewport));
+    const double with_effects = static_cast<double>(e.with_effects.load(std::memory_order_relaxed));
     const auto lost = [&](const prepare::ValueCurve& curve, float at) {
         const double fixed_us =
             static_cast<double>(e.costs.combine_at(at, viewport).fixed_us + e.costs.enlarge_us(at, viewport)) + slice_end_us;
         const double planned_us = hints.planned_us[model::resolution_step(at)];
-        const double items_us = (planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us));
+        const double items_us = (planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us)) / with_effects;
         return prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(std::min(1.0F, at * sharper)));
     };
     const float other = e.resolution.trial(hints.planned_us);

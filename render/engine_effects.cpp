@@ -70,6 +70,7 @@ void Engine::Impl::share_budget(const prepare::PreparedFrame& set, double room_u
         lever.offered_us[g] = for_sale && forms_us > 0.0F ? more_us(combine, lever.forms, lever.costs[g]) / forms_us : 0.0F;
         all += lever.offered_us[g];
     }
+    with_effects.store(all, std::memory_order_relaxed);
     const float of_forms_us = std::max(1.0F, std::min(static_cast<float>(room_us) / all, full_us));
     for (float& us : lever.offered_us) us *= of_forms_us;
 }

@@ -68,6 +68,7 @@ struct Engine::Impl {
     EffectLever lever GUARDED_BY(draws);
     EffectWorth worth;                           ///< constant after open(); empty where no effects are bought
     std::atomic<model::EffectMask> without = 0;  ///< PreparedFrame::without of the next sets
+    std::atomic<float> with_effects{1};          ///< time of forms and bought effects together, as a multiple of the forms'
     std::atomic<float> light_hour{std::numeric_limits<float>::quiet_NaN()};  ///< of set_light()
     double promised_rad GUARDED_BY(draws) = 0;                               ///< error that the last cut was to keep; 0: none
     /// How long the frame before took; on a clock that does not run within frames, as predicted. 0: it drew no cut.

@@ -72,6 +72,23 @@ TEST(EffectWorth, FollowsTheHour) {
     for (const float hour : {0.0F, 12.0F, 23.9F}) EXPECT_EQ(loss_at(noon, 0, node, hour), loss_at(worth, 0, node, 12));
 }
 
+TEST(EffectWorth, CountsForMoreWhereAllIsDark) {
+    const std::vector<model::EffectMask> switches{effect_lamps};
+    const auto loss = [&](float colour_of_other) {
+        SmallModel small;
+        const auto node =
+            small.square(small.material(test::plain(0.1F, 0.1F, 0.1F, 1, effect_sun | effect_lamps)), test::at(0, 0, -3));
+        const float c = colour_of_other;
+        small.square(small.material(test::plain(c, c, c)), test::at(5, 0, -3));
+        model::Model m = small.finish();
+        m.lamp_light.assign(m.vertices.size(), {{128, 128, 128, 0}, {}});
+        return loss_at(EffectWorth(m, groups_of(switches), std::vector<double>{0}, sky), 0, node, 0);
+    };
+    // A light of a quarter on a colour of 0.1. Beside a bright thing that is the same by night, hardly anything is darker.
+    EXPECT_NEAR(loss(1), 0.00064, 0.00003);
+    EXPECT_GT(loss(0), 3 * loss(1));
+}
+
 TEST(EffectWorth, OfShadowsIsWhatTheyTakeFromTheSun) {
     SmallModel small;
     const auto node = small.square(small.material(test::plain(1, 1, 1, 1, effect_sun | effect_shadow)), test::at(0, 0, -3));

@@ -15,11 +15,11 @@
 namespace surefoot::measure {
 namespace {
 
-constexpr model::Viewport picture{320, 180};
+constexpr model::Viewport priced_view{320, 180};
 
 /// Its lit textured items have all effects with a price. Sizes lie between those that were measured.
 CalibrationScene with_all_effects() {
-    CalibrationScene scene = make_calibration_scene(picture, true, 77);
+    CalibrationScene scene = make_calibration_scene(priced_view, true, 77);
     for (model::Material& material : scene.model.materials)
         if (material.effects == (model::effect_texture | model::effect_sun))
             for (const model::EffectPrice& price : effects::usual_prices()) material.effects |= price.effect;
@@ -49,7 +49,7 @@ double measured_us(gl::Device& device, std::span<const gl::DrawItem> items, mode
 TEST(EffectPrices, PredictWhatEachAddsToASceneWithAllOfThem) {
     CalibrateOptions options;
     options.quick = true;
-    options.device.viewport = picture;
+    options.device.viewport = priced_view;
     if (const auto probe = gl::open_device(options.device); !probe) GTEST_SKIP() << probe.error().text();
     const auto table = calibrate(options, {});
     ASSERT_TRUE(table.ok()) << table.error().text();
@@ -68,7 +68,8 @@ TEST(EffectPrices, PredictWhatEachAddsToASceneWithAllOfThem) {
             if (cell.effects != (model::effect_texture | model::effect_sun) || cell.triangles < 50 || cell.pixels < 500) continue;
             for (const gl::DrawItem& item : cell.items) {
                 float pixels = 0;
-                costs.of(item.rep, scene.model.nodes[item.node].box, dvec3(0), model::make_view_scale(Pose{}, picture), pixels);
+                static_cast<void>(costs.of(item.rep, scene.model.nodes[item.node].box, dvec3(0),
+                                           model::make_view_scale(Pose{}, priced_view), pixels));
                 const model::ItemCost added = costs.of_effects(item.rep, pixels, effect);
                 predicted += static_cast<double>(added.submit_us + added.raster_us);
             }
