@@ -54,6 +54,7 @@ struct BakeContext {
     model::Index proxy_or_none = 0;       ///< the same, or none where every colour is a material's own
     std::vector<PlacedObject> objects{};  ///< pieces count each
     std::uint32_t object_count = 0;       ///< conceptual ones
+    std::vector<model::Index> motions{};  ///< of the model, by those of the scene
     std::vector<MeshForm> forms{};
     ClusterTree tree{};
     std::vector<ClusterForm> clusters{};
@@ -116,7 +117,7 @@ void BakeContext::place_objects() {
         object.motion = node.motion;
         objects.push_back(std::move(object));
     }
-    adopt_motions(scene, objects, model);
+    motions = adopt_motions(scene, objects, model);
 }
 
 bool BakeContext::make_forms() {
@@ -486,7 +487,8 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         context.measure_areas();
         fill_scene_light(context.model);
         context.find_effects();
-        context.model.ground = make_ground(scene, progress);
+        context.model.ground = make_ground(scene, progress, nullptr, &context.model.moving_ground);
+        for (model::Index& motion : context.model.moving_ground.motions) motion = context.motions[motion];
         const std::optional<model::Ground> ways = ground_with_ways(context.model);
         Tour tour = make_tour(ways ? *ways : context.model.ground, context.model.nodes[0].box, progress);
         sweep_boxes(context.model);
@@ -503,6 +505,7 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         model.provenance.warnings.push_back(std::move(line));
     model.provenance.quality = options.quality == Quality::full ? "full" : "draft";
     if (auto valid = model::validate(model); !valid) return valid.error();
+    model::index_moving_ground(model);
     return std::move(model);
 }
 

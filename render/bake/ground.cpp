@@ -77,10 +77,43 @@ public:
         });
         return true;
     }
-    [[nodiscard]] model::Ground trees();
+    /// Of all nodes as they stand at rest, or of those that never move.
+    [[nodiscard]] model::Ground trees(bool still_only = false);
+    [[nodiscard]] model::MovingGround moving_trees();
     [[nodiscard]] BlockingTriangles& blocking() { return blocking_; }
 
 private:
+    /// Nodes that block with the same triangles of one mesh, by mesh and triangles.
+    using Variants = std::map<std::pair<importer::Index, std::vector<bool>>, std::vector<std::size_t>>;
+    [[nodiscard]] bool moves(std::size_t node) const { return scene_.nodes[node].motion != importer::none; }
+    template <class Wanted>
+    [[nodiscard]] Variants variants(const Wanted& wanted) const {
+        Variants found;
+        for (std::size_t n = 0; n < blocking_.size(); ++n) {
+            if (!wanted(n) || std::find(blocking_[n].begin(), blocking_[n].end(), true) == blocking_[n].end()) continue;
+            found[{scene_.nodes[n].mesh, blocking_[n]}].push_back(n);
+        }
+        return found;
+    }
+    void add_triangles(std::size_t node, const dmat4& world, std::vector<model::GroundTriangle>& to) const {
+        const GroundFacts& facts = facts_[scene_.nodes[node].mesh];
+        for (std::size_t t = 0; t < facts.corners.size(); ++t)
+            if (blocking_[node][t]) to.push_back(triangle_of(facts, t, world));
+    }
+    /// In the mesh's frame.
+    [[nodiscard]] GroundTree shared_tree(const std::vector<std::size_t>& nodes) const {
+        std::vector<model::GroundTriangle> triangles;
+        add_triangles(nodes.front(), dmat4(1.0), triangles);
+        double scale = 0;
+        for (const std::size_t n : nodes) scale = std::max(scale, largest_scale(scene_.nodes[n].world));
+        return build_tree(triangles, lattice_step_m / scale);
+    }
+    void add_instances(const std::vector<std::size_t>& nodes, model::Ground& ground) const {
+        for (const std::size_t n : nodes) {
+            const dmat4& world = scene_.nodes[n].world;
+            ground.instances.push_back({dvec3(world[3]), mat3(world), static_cast<std::uint32_t>(ground.meshes.size() - 1)});
+        }
+    }
     void find_facts() {
         std::vector<bool> used(scene_.meshes.size(), false);
         for (const importer::Node& node : scene_.nodes)
@@ -146,15 +179,11 @@ private:
 };
 
 /// Nodes that block with the same triangles of one mesh share a tree.
-model::Ground GroundMaker::trees() {
-    std::map<std::pair<importer::Index, std::vector<bool>>, std::vector<std::size_t>> variants;
-    for (std::size_t n = 0; n < blocking_.size(); ++n) {
-        if (std::find(blocking_[n].begin(), blocking_[n].end(), true) == blocking_[n].end()) continue;
-        variants[{scene_.nodes[n].mesh, blocking_[n]}].push_back(n);
-    }
+model::Ground GroundMaker::trees(bool still_only) {
+    const Variants all = variants([&](std::size_t n) { return !still_only || !moves(n); });
     std::vector<std::size_t> once;  // nodes
     std::vector<const std::vector<std::size_t>*> shared;
-    for (const auto& [variant, nodes] : variants) {
+    for (const auto& [variant, nodes] : all) {
         const auto triangles = static_cast<std::size_t>(std::count(variant.second.begin(), variant.second.end(), true));
         if (nodes.size() > 1 && triangles >= min_shared_triangles)
             shared.push_back(&nodes);
@@ -164,35 +193,39 @@ model::Ground GroundMaker::trees() {
     std::sort(once.begin(), once.end());
     std::vector<GroundTree> trees(shared.size() + 1);
     for_all(trees.size(), [&](std::size_t i) {
-        std::vector<model::GroundTriangle> triangles;
-        const auto add = [&](std::size_t n, const dmat4& world) {
-            const GroundFacts& facts = facts_[scene_.nodes[n].mesh];
-            for (std::size_t t = 0; t < facts.corners.size(); ++t)
-                if (blocking_[n][t]) triangles.push_back(triangle_of(facts, t, world));
-        };
-        double scale = 1;
-        if (i == 0) {
-            for (const std::size_t n : once) add(n, scene_.nodes[n].world);
-        } else {
-            add(shared[i - 1]->front(), dmat4(1.0));
-            scale = 0;
-            for (const std::size_t n : *shared[i - 1]) scale = std::max(scale, largest_scale(scene_.nodes[n].world));
+        if (i > 0) {
+            trees[i] = shared_tree(*shared[i - 1]);
+            return;
         }
-        trees[i] = build_tree(triangles, lattice_step_m / scale);
+        std::vector<model::GroundTriangle> triangles;
+        for (const std::size_t n : once) add_triangles(n, scene_.nodes[n].world, triangles);
+        trees[0] = build_tree(triangles, lattice_step_m);
     });
     model::Ground ground;
     for (std::size_t i = 0; i < trees.size(); ++i) {
         const bool empty = trees[i].triangles == 0;
         if (empty && i > 0) continue;
         append(ground, std::move(trees[i]));
-        if (i == 0) continue;
-        for (const std::size_t n : *shared[i - 1]) {
-            const dmat4& world = scene_.nodes[n].world;
-            ground.instances.push_back({dvec3(world[3]), mat3(world), static_cast<std::uint32_t>(ground.meshes.size() - 1)});
-        }
+        if (i > 0) add_instances(*shared[i - 1], ground);
     }
     order_instances(ground);
     return ground;
+}
+
+/// Every node that moves is an instance, for it moves by itself.
+model::MovingGround GroundMaker::moving_trees() {
+    model::MovingGround moving;
+    std::vector<std::uint32_t> motions;
+    for (const auto& [variant, nodes] : variants([&](std::size_t n) { return moves(n); })) {
+        GroundTree tree = shared_tree(nodes);
+        if (tree.triangles == 0) continue;
+        if (moving.rest.meshes.empty()) append(moving.rest, {});
+        append(moving.rest, std::move(tree));
+        add_instances(nodes, moving.rest);
+        for (const std::size_t n : nodes) motions.push_back(scene_.nodes[n].motion);
+    }
+    for (const std::uint32_t old : order_instances(moving.rest)) moving.motions.push_back(motions[old]);
+    return moving;
 }
 
 /// Whether a default walker could stand on any triangle.
@@ -219,10 +252,12 @@ bool has_floor(const model::Ground& ground) {
 
 }  // namespace
 
-model::Ground make_ground(const importer::Scene& scene, const Progress& progress, BlockingTriangles* blocking) {
+model::Ground make_ground(const importer::Scene& scene, const Progress& progress, BlockingTriangles* blocking,
+                          model::MovingGround* moving) {
     GroundMaker maker(scene, progress);
     if (!maker.run()) return {};
-    model::Ground ground = maker.trees();
+    model::Ground ground = maker.trees(moving != nullptr);
+    if (moving != nullptr) *moving = maker.moving_trees();
     if (blocking != nullptr) *blocking = std::move(maker.blocking());
     return ground;
 }

@@ -5,6 +5,7 @@
 
 #include "render/import/scene.hpp"
 #include "render/model/ground.hpp"
+#include "render/model/moving_ground.hpp"
 #include "rt/base/progress.hpp"
 
 namespace surefoot::bake {
@@ -13,8 +14,10 @@ namespace surefoot::bake {
 using BlockingTriangles = std::vector<std::vector<bool>>;
 
 /// From full detail, independent of what is drawn. Runs on the threads of the caller's arena; the same bits for any number of
-/// them. Empty if the user stops it. `blocking`, if given, receives the classes.
-model::Ground make_ground(const importer::Scene& scene, const Progress& progress, BlockingTriangles* blocking = nullptr);
+/// them. Empty if the user stops it. `blocking`, if given, receives the classes. `moving`, if given, receives what blocks of
+/// nodes with a motion, with numbers of Scene::motions; without it they stand as at rest.
+model::Ground make_ground(const importer::Scene& scene, const Progress& progress, BlockingTriangles* blocking = nullptr,
+                          model::MovingGround* moving = nullptr);
 
 /// The opaque triangles of all placed nodes, whatever stops a walker: what hides the sky. Glass and cut-out cards are left out,
 /// and so are parts smaller than a foot. As make_ground() else.

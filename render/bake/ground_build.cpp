@@ -200,7 +200,7 @@ void append(model::Ground& ground, GroundTree&& tree) {
     ground.triangles += tree.triangles;
 }
 
-void order_instances(model::Ground& ground) {
+std::vector<std::uint32_t> order_instances(model::Ground& ground) {
     std::vector<dvec3> centres;
     for (const model::GroundInstance& instance : ground.instances) centres.push_back(model::box_of(ground, instance).centre());
     std::vector<std::uint32_t> order(centres.size());
@@ -211,6 +211,7 @@ void order_instances(model::Ground& ground) {
     for (const std::uint32_t i : order) sorted.push_back(ground.instances[i]);
     ground.instances = std::move(sorted);
     model::index_instances(ground);
+    return order;
 }
 
 }  // namespace surefoot::bake

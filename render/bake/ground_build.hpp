@@ -23,7 +23,7 @@ struct GroundTree {
 GroundTree build_tree(std::span<const model::GroundTriangle> triangles, double step_m);
 /// Its numbers count on from the ground's.
 void append(model::Ground& ground, GroundTree&& tree);
-/// Puts instances into the order of their implicit tree. The ground's meshes must be complete.
-void order_instances(model::Ground& ground);
+/// Puts instances into the order of their implicit tree. The ground's meshes must be complete. Returns their old numbers.
+std::vector<std::uint32_t> order_instances(model::Ground& ground);
 
 }  // namespace surefoot::bake

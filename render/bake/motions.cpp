@@ -112,7 +112,7 @@ std::vector<Box> boxes_of_way(const model::Model& model, Index motion, const Box
 
 }  // namespace
 
-void adopt_motions(const importer::Scene& scene, std::vector<PlacedObject>& objects, model::Model& model) {
+std::vector<Index> adopt_motions(const importer::Scene& scene, std::vector<PlacedObject>& objects, model::Model& model) {
     std::vector<bool> used(scene.motions.size(), false);
     for (const PlacedObject& object : objects)
         for (Index m = object.motion; m != model::none && !used[m]; m = scene.motions[m].outer) used[m] = true;
@@ -129,6 +129,7 @@ void adopt_motions(const importer::Scene& scene, std::vector<PlacedObject>& obje
     }
     for (PlacedObject& object : objects)
         if (object.motion != model::none) object.motion = renamed[object.motion];
+    return renamed;
 }
 
 ClusterTree cluster_objects(std::span<const PlacedObject> objects, const std::vector<bool>& in_rooms, const model::Model& model,

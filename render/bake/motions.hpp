@@ -11,8 +11,9 @@
 
 namespace surefoot::bake {
 
-/// Those motions of the scene that objects have, and those that carry them, into the model. Objects name them there.
-void adopt_motions(const importer::Scene& scene, std::vector<PlacedObject>& objects, model::Model& model);
+/// Those motions of the scene that objects have, and those that carry them, into the model. Objects name them there. Returns
+/// their numbers in the model by those in the scene.
+std::vector<model::Index> adopt_motions(const importer::Scene& scene, std::vector<PlacedObject>& objects, model::Model& model);
 
 /// Still objects alone have the clusters of grow_clusters(). What moves stands beside them, in clusters of its own. Objects of
 /// one motion come together below one entity, which moves with it. Clusters above these stand still: their forms show what moves

@@ -52,16 +52,16 @@ Result<void> check_meshes(const Ground& ground) {
     return {};
 }
 
-void fill_boxes(Ground& ground, std::size_t node, std::size_t first, std::size_t count) {
+void fill_boxes(std::vector<Box>& tree, std::span<const Box> leaves, std::size_t node, std::size_t first, std::size_t count) {
     if (count == 1) {
-        ground.instance_boxes[node] = box_of(ground, ground.instances[first]);
+        tree[node] = leaves[first];
         return;
     }
     const std::size_t left = (count + 1) / 2;
-    fill_boxes(ground, node + 1, first, left);
-    fill_boxes(ground, node + 2 * left, first + left, count - left);
-    ground.instance_boxes[node] = ground.instance_boxes[node + 1];
-    ground.instance_boxes[node].grow(ground.instance_boxes[node + 2 * left]);
+    fill_boxes(tree, leaves, node + 1, first, left);
+    fill_boxes(tree, leaves, node + 2 * left, first + left, count - left);
+    tree[node] = tree[node + 1];
+    tree[node].grow(tree[node + 2 * left]);
 }
 
 }  // namespace
@@ -78,11 +78,19 @@ Box box_of(const Ground& ground, const GroundInstance& instance) {
     return box;
 }
 
+std::vector<Box> tree_over(std::span<const Box> leaves) {
+    std::vector<Box> tree;
+    if (leaves.empty()) return tree;
+    tree.resize(2 * leaves.size() - 1);
+    fill_boxes(tree, leaves, 0, 0, leaves.size());
+    return tree;
+}
+
 void index_instances(Ground& ground) {
-    ground.instance_boxes.clear();
-    if (ground.instances.empty()) return;
-    ground.instance_boxes.resize(2 * ground.instances.size() - 1);
-    fill_boxes(ground, 0, 0, ground.instances.size());
+    std::vector<Box> leaves;
+    leaves.reserve(ground.instances.size());
+    for (const GroundInstance& instance : ground.instances) leaves.push_back(box_of(ground, instance));
+    ground.instance_boxes = tree_over(leaves);
 }
 
 Result<void> validate(const Ground& ground) {

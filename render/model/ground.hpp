@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,8 @@ struct Ground {
 Box box_of(const Ground& ground, const GroundInstance& instance);
 /// Fills instance_boxes. The ground must be valid.
 void index_instances(Ground& ground);
+/// Boxes of the implicit tree over these leaves, in their order.
+std::vector<Box> tree_over(std::span<const Box> leaves);
 
 /// Checks every index, range and number that queries rely on. Errors name array and element.
 Result<void> validate(const Ground& ground);

@@ -288,7 +288,10 @@ Check check_rest(const Model& m) {
     return {};
 }
 
-Check check_ground(const Model& m) { return validate(m.ground); }
+Check check_ground(const Model& m) {
+    if (auto still = validate(m.ground); !still) return still;
+    return validate_moving_ground(m);
+}
 
 Check check_tour(const Model& m) {
     double before = -1;

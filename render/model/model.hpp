@@ -12,6 +12,7 @@
 #include "render/model/effects.hpp"
 #include "render/model/ground.hpp"
 #include "render/model/motion.hpp"
+#include "render/model/moving_ground.hpp"
 #include "render/model/picture_loss.hpp"
 #include "rt/base/geometry.hpp"
 #include "rt/base/named.hpp"
@@ -144,6 +145,7 @@ struct Model {
     std::string names;                                     ///< zero-terminated strings, offset 0 is ""
     std::vector<EffectFinding> effects;                    ///< one an effect, bit order
     Ground ground;                                         ///< for walking; empty in older files
+    MovingGround moving_ground;                            ///< what of it moves
     Path tour;                                             ///< the default path; empty in older files
     std::string tour_kind;                                 ///< what it does: "through its free space"
     std::uint32_t object_count = 0;

@@ -204,6 +204,10 @@ void fields(Archive& a, InstanceT& i) {
     a(i.mesh);
 }
 
+template <class Archive, class NumberT>
+requires std::is_same_v<std::remove_const_t<NumberT>, std::uint32_t>
+void fields(Archive& a, NumberT& number) { a(number); }
+
 template <class Archive, class SampleT>
 requires std::is_same_v<std::remove_const_t<SampleT>, PathSample>
 void fields(Archive& a, SampleT& s) {

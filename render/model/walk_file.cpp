@@ -52,15 +52,16 @@ enum Section : std::uint32_t {
     tour_section,
     light_section,
     motion_section,
+    moving_ground_section,
     section_count
 };
 constexpr std::array<std::string_view, section_count> section_names = {
-    "pages",   "nodes",      "representations", "parts",  "placements", "materials", "textures",
-    "effects", "provenance", "losses",          "ground", "tour",       "light",     "motion"};
+    "pages",      "nodes",  "representations", "parts", "placements", "materials", "textures",     "effects",
+    "provenance", "losses", "ground",          "tour",  "light",      "motion",    "moving ground"};
 /// No model is valid without them; any other that a file has not got is empty.
 constexpr bool required(std::uint32_t section) {
     return section != textures_section && section != losses_section && section != ground_section && section != tour_section &&
-           section != light_section && section != motion_section;
+           section != light_section && section != motion_section && section != moving_ground_section;
 }
 
 struct PageEntry {
@@ -170,6 +171,10 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
         case motion_section:
             put.list(m.motions), put.list(m.motion_keys), put.list(moving_placements(m));
             break;
+        case moving_ground_section:
+            walk::ground(put, m.moving_ground.rest);
+            put.list(m.moving_ground.motions);
+            break;
         default:
             walk::rest(put, m);
             break;
@@ -226,7 +231,8 @@ Result<void> open_sections(Reading& in, std::span<const std::byte> table, std::s
     if (!rest.empty()) return in.error("section table", "Some bytes belong to no section");
     for (std::uint32_t id = 0; id < section_count; ++id) {
         if (required(id) && !in.sections[id]) return in.error(section_names[id], "The section is missing");
-        const bool drawn = id != rest_section && id != losses_section && id != ground_section && id != tour_section;
+        const bool drawn = id != rest_section && id != losses_section && id != ground_section && id != tour_section &&
+                           id != moving_ground_section;
         const bool newer = id >= light_section && !in.sections[id];  // files without it keep the hash that they had
         if (drawn && !newer) in.model_hash = fnv1a(in.model_hash, hashes[id]);
     }
@@ -328,6 +334,10 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
         case motion_section:
             if (!take_moving(take, m)) return in.error(section_names[section], "A placement is out of range, or out of order");
             break;
+        case moving_ground_section:
+            walk::ground(take, m.moving_ground.rest);
+            take.list(m.moving_ground.motions);
+            break;
         default:
             walk::rest(take, m);
             break;
@@ -414,6 +424,7 @@ Result<WalkFileInfo> write_walk(const std::string& file, const Model& model) {
         if (section == tour_section && model.tour.samples.empty()) continue;
         if (section == light_section && model.light == LightFacts{}) continue;
         if (section == motion_section && model.motions.empty()) continue;
+        if (section == moving_ground_section && model.moving_ground.empty()) continue;
         const auto bytes = section_bytes(section, model, sizes, pages);
         table(section), table(static_cast<std::uint64_t>(bytes.size())), table(hash_bytes(bytes));
         if (auto written = out.write(bytes); !written) return written.error();
@@ -460,6 +471,7 @@ Result<Model> read_walk(const std::string& file, WalkFileInfo* info) {
                      valid.error().kind};
     }
     index_instances(model.ground);
+    index_moving_ground(model);
     if (info != nullptr) *info = {bytes->size(), sizes.sum(), static_cast<std::uint32_t>(pages.size()), in.model_hash};
     return model;
 }

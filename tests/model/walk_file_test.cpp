@@ -251,10 +251,11 @@ struct Sections {
     }
 };
 
-constexpr std::array<const char*, 14> section_names = {"pages",     "nodes",    "representations", "parts",      "placements",
+constexpr std::array<const char*, 15> section_names = {"pages",     "nodes",    "representations", "parts",      "placements",
                                                        "materials", "textures", "effects",         "provenance", "losses",
-                                                       "ground",    "tour",     "light",           "motion"};
-constexpr std::uint32_t textures_id = 6, losses_id = 9, ground_id = 10, tour_id = 11, light_id = 12, motion_id = 13;  // optional
+                                                       "ground",    "tour",     "light",           "motion",     "moving ground"};
+constexpr std::uint32_t textures_id = 6, losses_id = 9, ground_id = 10, tour_id = 11, light_id = 12, motion_id = 13,
+                        moving_ground_id = 14;  // optional
 
 struct OpenTable : WalkFile {
     Model model = two_triangles();
@@ -407,7 +408,8 @@ TEST_F(OpenTable, LossesThatAreNoSharesAreRefused) {
 TEST_F(OpenTable, AMissingRequiredSectionIsAnErrorByItsName) {
     const Sections whole = sections_of_model();
     for (std::uint32_t id = 0; id < section_names.size(); ++id) {
-        if (id == textures_id || id == losses_id || id == ground_id || id == tour_id || id == light_id || id == motion_id)
+        if (id == textures_id || id == losses_id || id == ground_id || id == tour_id || id == light_id || id == motion_id ||
+            id == moving_ground_id)
             continue;
         Sections sections = whole;
         sections.drop(id);

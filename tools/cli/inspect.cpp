@@ -208,6 +208,7 @@ int run_inspect(InspectArguments& a, const Context& context) {
                   {"meshes", m->ground.meshes.size()},
                   {"instances", m->ground.instances.size()},
                   {"blocks", m->ground.blocks.size()},
+                  {"moving", m->moving_ground.motions.size()},
                   {"bytes", model::bytes_of(m->ground)}}},
                 {"tour", {{"kind", m->tour_kind}, {"samples", m->tour.samples.size()}, {"seconds", m->tour.duration_s()}}},
                 {"box_m", {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}}},
