@@ -6,28 +6,31 @@
 #include <numbers>
 
 #include "render/model/ground/walker_parts.hpp"
+#include "render/model/model.hpp"
 
 namespace surefoot::model {
 
 namespace {
 
-constexpr double step_slack_m = 0.01;                      // a step of exactly step_m is climbed
 constexpr double slope_slack = 1e-6, edge_slack_m = 1e-3;  // a slope of exactly the limit is climbed, and an edge stops
 constexpr double foot_share = 0.5;                         // radius of the disc under which the floor is looked for
-constexpr double max_overlap_m = 0.01;
 constexpr double gravity_m_s2 = 9.81, max_fall_m_s = 5, fall_from_m = 3;
 constexpr double max_roll_m_s = 1;
 constexpr double eye_m_s2 = 8, eye_settles_s = 0.06;  // how the eye follows the feet up and down
-constexpr double max_lag_m = 0.8;                     // the eye behind the feet, climbing
 constexpr double max_sink_m = 0.15;                   // the eye below its height over the feet, landing
 constexpr double gather_m = 0.25;                     // triangles are gathered this much further than a step needs
 constexpr double close_m = 0.12;
 constexpr std::size_t max_close = 4096;
 constexpr double wall_max_up = 0.7;  // of a normal: what is more level is a floor or a ceiling, and the eye is not led through it
 
+using walker_parts::max_lag_m, walker_parts::max_overlap_m, walker_parts::step_slack_m;
+
 }  // namespace
 
-Walker::Walker(const Ground& ground, const Body& body) : ground_(ground), body_(body), near_(ground) {
+Walker::Walker(const Model& model, const Body& body) : Walker(model.ground, &model, body) {}
+
+Walker::Walker(const Ground& ground, const Model* model, const Body& body)
+    : ground_(ground), body_(body), near_(ground), moving_(model) {
     // A small visitor is a thin one too, and steps no higher than the knee.
     const double tall = body_.eye_m + crown_m;
     body_.step_m = std::min(body_.step_m, 0.4 * tall);
@@ -85,8 +88,9 @@ Contact Walker::sweep(const dvec3& feet, const dvec3& move, double skin) {
     const double reach = glm::length(move) + skin;
     const bool short_step = reach <= close_m && near_.holds(box);
     if (short_step && (!close_known_ || glm::length(feet - close_to_) + reach > close_m)) find_close(feet);
+    if (moving_.exist()) first = moving_.first_contact(grown, move, box);
     if (!short_step || !close_complete_) {
-        for_near(box, offer);
+        for_still(box, offer);
         return first;
     }
     for (const Close& close : close_) {
@@ -124,7 +128,7 @@ Walker::Footing Walker::footing(const dvec3& at, double top, double bottom) cons
     const double reach = foot_share * body_.radius_m, min_up = std::cos(body_.slope_rad) - slope_slack;
     Footing found{-walker_parts::infinity, -walker_parts::infinity};
     const Box column{dvec3(at.x - reach, bottom, at.z - reach), dvec3(at.x + reach, top, at.z + reach)};
-    for_near(column, [&](const GroundTriangle& t) {
+    const auto offer = [&](const GroundTriangle& t) {
         if (std::max({t.a.y, t.b.y, t.c.y}) <= found.floor) return;
         const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
         const bool floor = std::abs(n.y) >= min_up * glm::length(n);
@@ -134,6 +138,13 @@ Walker::Footing Walker::footing(const dvec3& at, double top, double bottom) cons
             found.any = std::max(found.any, y);
             if (floor) found.floor = std::max(found.floor, y);
         }
+    };
+    for_still(column, offer);
+    moving_.for_triangles(column, [&](const GroundTriangle& t, std::uint32_t thing) {
+        const Footing before = found;
+        offer(t);
+        if (found.any > before.any) found.any_thing = thing;
+        if (found.floor > before.floor) found.floor_thing = thing;
     });
     return found;
 }
@@ -172,10 +183,12 @@ Walker::Attempt Walker::attempt(const dvec3& move) {
         return to;
     };
     double floor = under.floor;
+    to.thing = under.floor_thing;
     if (floor == -walker_parts::infinity &&
         under.any > -walker_parts::infinity) {  // only what is too steep: down it goes, if it stood on such before
         if (supported_ && (!steep_ || under.any > feet_.y)) return refused(Barrier::slope);
         floor = under.any;
+        to.thing = under.any_thing;
         to.steep = true;
     }
     if (floor == -walker_parts::infinity) {
@@ -216,6 +229,7 @@ void Walker::travel(const dvec3& move) {
     feet_ = best.feet;
     supported_ = best.supported;
     steep_ = best.steep;
+    support_ = best.thing;
     if (!supported_) return;
     fall_m_s = 0;
     remember_free_place();
@@ -237,6 +251,7 @@ void Walker::fall(double dt_s) {
     if (below.share <= 1 && feet_.y - under.any > body_.step_m && roll_off(below, dt_s)) return;
     supported_ = true;
     steep_ = under.any > under.floor;
+    support_ = under.thing();
     fall_m_s = 0;
 }
 
@@ -290,7 +305,12 @@ Walker::Foreseen Walker::foresee(const dvec3& feet, const dvec3& eye, const dvec
 }
 
 dvec3 Walker::walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept {
-    if (!known_ || from != eye_) {  // somebody placed the eye
+    if (time_s_ < stood_s_ && time_s_ > stood_s_ - max_pause_s) time_s_ = stood_s_;  // a display moved the frames' grid
+    const double since_s = time_s_ - stood_s_;
+    double moved_from_s = stood_s_;
+    stood_s_ = time_s_;
+    if (moving_.exist()) ride_ = {};
+    if (!known_ || from != eye_ || (moving_.exist() && !(since_s >= 0 && since_s <= max_pause_s))) {  // somebody placed the eye
         eye_ = from;
         known_ = true;
         awake_ = searching_ = false;
@@ -299,8 +319,10 @@ dvec3 Walker::walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept
     const dvec3 move(wanted.x - from.x, 0, wanted.z - from.z);
     const bool pushed = move != dvec3(0.0);
     if (!awake_) {
+        gather_moving(eye_ - dvec3(0, body_.eye_m, 0), time_s_, time_s_);
         if (!pushed) return eye_;
         stand_up();
+        moved_from_s = time_s_;
         tried_from_ = feet_;
         pushed_s_ = 0;
         trial_ = 0;
@@ -308,9 +330,11 @@ dvec3 Walker::walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept
     stuck_s_ = std::max(0.0, stuck_s_ - dt_s);
     barrier_ = stuck_s_ > 0 ? Barrier::stuck : Barrier::clear;
     if (searching_) {
+        gather_moving(feet_, time_s_, time_s_);
         look_for_a_free_place();
         return eye_;
     }
+    if (moving_.exist()) move_along(moved_from_s, time_s_);
     if (!pushed && supported_ && eye_m_s == 0 && eye_.y == feet_.y + body_.eye_m) return eye_;
     prepare_near(feet_, glm::length(move) + max_fall_m_s * dt_s);
     if (pushed) travel(move);

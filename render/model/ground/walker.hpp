@@ -8,6 +8,7 @@
 #include "render/model/ground.hpp"
 #include "render/model/ground/capsule.hpp"
 #include "render/model/ground/near_blocks.hpp"
+#include "render/model/ground/near_moving.hpp"
 #include "rt/base/named.hpp"
 
 namespace surefoot::model {
@@ -41,7 +42,22 @@ inline constexpr std::array barriers = {
 class Walker {
 public:
     /// The ground must outlive this, and be valid and indexed.
-    Walker(const Ground& ground, const Body& body);
+    Walker(const Ground& ground, const Body& body) : Walker(ground, nullptr, body) {}
+    /// Besides its ground, what moves in the model carries, pushes and stops the walker. The same holds for the model.
+    Walker(const Model& model, const Body& body);
+
+    /// The time until which things move in the next step, seconds since the walk began. Up to max_pause_s back it stands still.
+    /// Where it goes back or on by more, the eye counts as placed: what moved meanwhile neither carried nor pushed it.
+    void set_time(double time_s) { time_s_ = time_s; }
+    static constexpr double max_pause_s = 0.25;
+
+    /// What things that move did with the eye in the last step, and may do in the next ones.
+    struct Ride {
+        dvec3 way{0.0};                          ///< in the last step
+        double turn_rad = 0;                     ///< to the left, with the floor under the feet
+        double max_m_s = 0, max_turn_rad_s = 0;  ///< of anything that may come within 2 m; 0: nothing does
+    };
+    [[nodiscard]] const Ride& ride() const { return ride_; }
 
     /// One step of the eye, from where it is towards `wanted`; only the level part of the way counts. Call it at every tick, also
     /// when the hand rests: falls go on. An eye that somebody placed elsewhere stays as it is until the hand moves.
@@ -81,6 +97,11 @@ public:
     /// How often a stuck walker went back, and how often one that began inside something was put beside it.
     [[nodiscard]] std::uint64_t returns() const { return returns_; }
     [[nodiscard]] std::uint64_t freed() const { return freed_; }
+    /// How often something that moves left no room: the walker was put beside it, or it passed through the walker.
+    [[nodiscard]] std::uint64_t put_aside() const { return put_aside_; }
+    [[nodiscard]] std::uint64_t passed_through() const { return passed_through_; }
+    /// How many things pass through the walker now.
+    [[nodiscard]] std::size_t passing() const { return moving_.passing().size(); }
     /// Whether the hand has moved since the eye was placed; before, the feet are nowhere.
     [[nodiscard]] bool stands() const { return awake_ && !searching_; }
     [[nodiscard]] const dvec3& eye() const { return eye_; }
@@ -96,17 +117,25 @@ private:
         const GroundTriangle* triangle;
         NearBlocks::Known* known;
     };
-    /// Heights of the highest floor and of the highest surface of any slope under the feet; minus infinity: none.
+    /// Heights of the highest floor and of the highest surface of any slope under the feet; minus infinity: none. And what moves
+    /// of them.
     struct Footing {
         double floor, any;
+        std::uint32_t floor_thing = no_thing, any_thing = no_thing;
+        /// What carries the feet that stand on it.
+        [[nodiscard]] std::uint32_t thing() const { return any > floor ? any_thing : floor_thing; }
     };
     /// Where a move would end.
     struct Attempt {
         dvec3 feet{0.0};
         bool supported = false, steep = false;
         Barrier barrier = Barrier::clear;
+        std::uint32_t thing = no_thing;
     };
 
+    Walker(const Ground& ground, const Model* model, const Body& body);
+    template <class Use>
+    void for_still(const Box& box, const Use& use) const;
     template <class Use>
     void for_near(const Box& box, const Use& use) const;
     void find_close(const dvec3& feet);
@@ -131,6 +160,21 @@ private:
     void remember_free_place();
     void go_back();
     void prepare_near(const dvec3& feet, double reach_m);
+    void gather_moving(const dvec3& feet, double from_s, double to_s);
+    void move_along(double from_s, double to_s);
+    void move_by(const dvec3& way);
+    void carry(double seconds);
+    [[nodiscard]] bool push_aside(double max_m, double seconds);
+    [[nodiscard]] bool has_floor_at(const dvec3& feet) const;
+    void keep_on_floor(bool was_pushed);
+    [[nodiscard]] bool sweeps(const NearMoving::Thing& thing, double seconds) const;
+    void evade(double seconds);
+    [[nodiscard]] bool step_beside(double turn);
+    [[nodiscard]] bool reaches(const dvec3& to) const;
+    [[nodiscard]] bool is_in(const dvec3& feet, const NearMoving::Thing& thing) const;
+    [[nodiscard]] bool is_in_any(const dvec3& feet) const;
+    [[nodiscard]] bool is_clear_of(const NearMoving::Thing& thing) const;
+    void end_passing();
 
     const Ground& ground_;
     Body body_;
@@ -163,6 +207,12 @@ private:
     std::uint32_t new_places_ = 0;  ///< remembered since then
     bool start_is_free_ = false;    ///< stood_up_at_ is a place to go back to
     std::uint64_t returns_ = 0, freed_ = 0;
+
+    NearMoving moving_;
+    double time_s_ = 0, stood_s_ = 0;   ///< of the next step, and of the last one
+    std::uint32_t support_ = no_thing;  ///< what moves under the feet; of supported feet
+    Ride ride_;
+    std::uint64_t put_aside_ = 0, passed_through_ = 0;
 };
 
 }  // namespace surefoot::model

@@ -29,10 +29,12 @@ bool Walker::is_inside_solid(const dvec3& feet, double sight_m) const {
         line.grow(middle + way);
         double nearest = 2;
         bool back = false;
-        for_triangles_near(ground_, line, [&](const GroundTriangle& t) {
+        const auto offer = [&](const GroundTriangle& t) {
             const Crossing crossing = crossing_of(middle, way, t);
             if (crossing.share < nearest) nearest = crossing.share, back = crossing.back;
-        });
+        };
+        for_triangles_near(ground_, line, offer);
+        moving_.for_triangles(line, [&](const GroundTriangle& t, std::uint32_t) { offer(t); });
         backs += nearest <= 1 && back ? 1 : 0;
     }
     return backs >= 5;
@@ -48,6 +50,7 @@ void Walker::stand_up() {
         under = footing(eye_, eye_.y, below - std::min(body_.edge_m, walker_parts::deep_m));
     supported_ = under.any > -walker_parts::infinity;
     steep_ = under.any > under.floor;
+    support_ = under.thing();
     feet_ = dvec3(eye_.x, supported_ ? std::max(under.floor, under.any) : eye_.y - body_.eye_m, eye_.z);
     stood_up_at_ = feet_;
     free_count_ = gone_back_ = new_places_ = 0;
@@ -60,7 +63,7 @@ void Walker::stand_up() {
         }
     }
     searching_ = !is_free(feet_) || is_inside_solid(feet_, start_sight_m);
-    start_is_free_ = supported_ && !steep_ && !searching_;
+    start_is_free_ = supported_ && !steep_ && !searching_ && support_ == no_thing;
     search_at_ = 0;
 }
 
@@ -130,6 +133,7 @@ void Walker::stand_at(const dvec3& feet) {
     feet_ = feet;
     eye_ = feet + dvec3(0, body_.eye_m, 0);
     supported_ = true;
+    support_ = no_thing;  // if it moves, the next step finds it
     steep_ = searching_ = false;
     fall_m_s = eye_m_s = 0;
     pushed_s_ = 0;
@@ -177,7 +181,7 @@ void Walker::watch(const dvec3& move, double dt_s) {
 const dvec3& Walker::newest_free_place() const { return free_places_[(free_first_ + free_count_ - 1) % max_free_places]; }
 
 void Walker::remember_free_place() {
-    if (steep_) return;  // one only slides on from there
+    if (steep_ || support_ != no_thing) return;  // one only slides on from there, or it is elsewhere later
     const dvec3& last = free_count_ > 0 ? newest_free_place() : stood_up_at_;
     if (glm::length(feet_ - last) < free_every_m || glm::length(feet_ - stood_up_at_) < free_every_m) return;
     if (free_count_ == max_free_places)
