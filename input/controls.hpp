@@ -81,6 +81,10 @@ struct NavigationSample {
     Pose pose;                 ///< integrated so far, double; see geometry.hpp for the frame
     dvec3 velocity_m_s{0.0};   ///< world
     dvec3 angular_rad_s{0.0};  ///< world, axis times rate
+    /// What of both comes from a floor or a wall that moves: how it carries the eye now, and at most in the next moments. Turns
+    /// are to the left. All 0 where nothing moves near.
+    dvec3 carried_m_s{0.0};
+    double carried_rad_s = 0, max_carried_m_s = 0, max_carried_rad_s = 0;
     double zoom_rate = 0;      ///< of the magnification's natural logarithm, 1/s
     double uncertainty_m = 0;  ///< of the pose one frame ahead; prepare/ widens its region by it
     double uncertainty_rad = 0;

@@ -12,6 +12,7 @@ namespace surefoot::input {
 namespace {
 
 constexpr std::int64_t pointer_pause_ns = 250'000'000;  // a hand on a pointer that rests so long has ended its turn
+constexpr double rounding_m = 1e-9;                     // of a step that was carried besides
 constexpr double two_pi = 2 * std::numbers::pi, two_pi_low = 2.4492935982947064e-16;  // their sum is 2 pi to 32 digits
 
 template <class V>
@@ -56,8 +57,10 @@ void walk(MotionState& state, const dquat& frame, const dvec3& velocity, double 
     state.position = allowed(state, ground, wanted, dt_s);
     state.rise_m_s = (state.position.y - before.y) / dt_s;
     state.velocity.y = 0;
+    if (ground.carried != nullptr) state.carried = ground.carried(ground.context), state.carried_s = dt_s;
     if (state.position.x == wanted.x && state.position.z == wanted.z) return;
-    const dvec3 gone = state.position - before;
+    const dvec3 gone = state.position - before - state.carried.way;
+    if (state.carried.way != dvec3(0.0) && glm::length(dvec2(gone.x - way.x, gone.z - way.z)) < rounding_m) return;
     const dvec3 kept = glm::inverse(frame) * dvec3(gone.x / dt_s, 0, gone.z / dt_s);
     state.velocity = towards(dvec3(0.0), kept, glm::length(state.velocity));
 }
@@ -102,8 +105,10 @@ void integrate(MotionState& state, const MotionLimits& limits, const dvec3& velo
     const dquat frame =
         walker_frame(state, limits.level || ground.walks(), yaw_before + rates.x * dt_s / 2, pitch_before + rates.y * dt_s / 2);
     state.rise_m_s = 0;
+    state.carried = {};
     if (ground.walks()) {
         walk(state, frame, velocity, dt_s, ground);
+        if (state.carried.turn_rad != 0) state.yaw.add(state.carried.turn_rad);
     } else if (velocity != dvec3(0.0)) {
         const dvec3 before = state.position, wanted = before + frame * velocity * dt_s;
         state.position = allowed(state, ground, wanted, dt_s);
@@ -127,6 +132,17 @@ void follow_zoom(MotionState& state, const MotionLimits& limits, double request,
     const double to = state.zoom + 0.5 * (before + state.zoom_rate) * dt_s;
     state.zoom = std::clamp(to, 0.0, std::log(limits.max_zoom));
     if (state.zoom != to) state.zoom_rate = 0;
+}
+
+/// What carries the eye goes on with it.
+void add_carried(const MotionState& state, NavigationSample& sample) {
+    const Carried& carried = state.carried;
+    sample.max_carried_m_s = carried.max_m_s, sample.max_carried_rad_s = carried.max_rad_s;
+    if (carried.way == dvec3(0.0) && carried.turn_rad == 0) return;
+    sample.carried_m_s = carried.way / state.carried_s;
+    sample.carried_rad_s = carried.turn_rad / state.carried_s;
+    sample.velocity_m_s += dvec3(sample.carried_m_s.x, 0, sample.carried_m_s.z);  // rise_m_s has the rest
+    sample.angular_rad_s.y += sample.carried_rad_s;
 }
 
 }  // namespace
@@ -161,6 +177,7 @@ bool place(MotionState& state, const Pose& pose, bool zooms) {
     state.roll = level > 1e-9 ? std::atan2(-over.x, over.y) : 0;
     state.velocity = dvec3(0.0);
     state.rise_m_s = 0;
+    state.carried = {};
     state.rates = dvec2(0.0);
     state.pointer.rest();
     state.walk.set(dvec3(0.0));
@@ -195,6 +212,7 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
         if (ground.halt != nullptr) ground.halt(ground.context);
         state.velocity = dvec3(0.0);
         state.rise_m_s = 0;
+        state.carried.way = dvec3(0.0), state.carried.turn_rad = 0;
         state.rates = dvec2(0.0);
         state.zoom_rate = 0;
         state.pointer.rest();
@@ -216,6 +234,7 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     sample.velocity_m_s = frame * state.velocity + dvec3(0, state.rise_m_s, 0);
     const dvec2 turning = state.rates + state.pointer.rates;
     sample.angular_rad_s = dvec3(0, turning.x, 0) + about_y(state.yaw.value) * dvec3(turning.y, 0, 0);
+    add_carried(state, sample);
     sample.zoom_rate = state.zoom_rate;
     sample.pointed = state.pointer.moves() || (state.pointed_ns >= 0 && now_ns - state.pointed_ns < pointer_pause_ns);
     sample.stamp_ns = command.stamp_ns;

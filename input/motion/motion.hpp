@@ -13,6 +13,13 @@
 
 namespace surefoot::input {
 
+/// What things that move did with the eye in a step of a Ground, and at most do in the next ones.
+struct Carried {
+    dvec3 way{0.0};       ///< of the step's way; world
+    double turn_rad = 0;  ///< by which the walker turns to the left with its floor
+    double max_m_s = 0, max_rad_s = 0;
+};
+
 /// Collision with walls, floors and stairs: returns where a step may end. `context` belongs to the caller. Must not throw or
 /// allocate. The answer may be nearer or aside; it is shortened to the wanted length. A non-finite answer holds the eye where it
 /// is. One that walks (rise_m_s2 > 0) also moves the eye up and down, is asked at every step, and for level moves only. Its
@@ -23,6 +30,7 @@ struct Ground {
     void* context = nullptr;
     double rise_m_s2 = 0;                            ///< largest acceleration that it gives to the eye, which may stop at once
     void (*halt)(void* context) noexcept = nullptr;  ///< a stop: what falls or rises does so no more
+    Carried (*carried)(void* context) noexcept = nullptr;  ///< of the last query; null: nothing moves
     [[nodiscard]] bool walks() const { return query != nullptr && rise_m_s2 > 0; }
 };
 
@@ -65,6 +73,8 @@ struct MotionState {
     double zoom = 0, zoom_rate = 0;       ///< natural logarithm of the magnification, and its rate, 1/s
     dvec3 velocity{0.0};                  ///< walker's frame: right, up, back; m/s
     double rise_m_s = 0;                  ///< upwards, by the ground
+    Carried carried;                      ///< in the last step
+    double carried_s = 0;                 ///< how long that was
     dvec2 rates{0.0};                     ///< yaw, pitch; rad/s
     OneEuro<dvec3> walk;
     OneEuro<dvec2> turning;
@@ -98,7 +108,8 @@ Pose carried(const NavigationSample& sample, double by_s);
 /// allow then. The bound covers a stop at any moment, by order or by a wall, and a new start in any direction. It holds for every
 /// input and order, except `brake` towards a moving request and the first moment of a zoom and of a pointer's turn. `rise_m_s2`:
 /// that of the Ground. The bound: |v(s) - v0| <= |v0| + A s, integrated over the lead t, with A = a + |v0| (|w0| + alpha t / 2),
-/// as the walker's frame turns.
+/// as the walker's frame turns. What carries the eye may stop at once, or begin: that adds |c0| t + c_max t, and the same to
+/// turns.
 Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double rise_m_s2 = 0);
 
 }  // namespace surefoot::input

@@ -81,6 +81,8 @@ Json input_of(const InputSummary& in) {
         {"walked", in.walked},
         {"returns", in.returns},
         {"freed", in.freed},
+        {"put_aside", in.put_aside},
+        {"passed_through", in.passed_through},
         {"filter_lag_ms", rounded(in.filter_lag_ms)},
         {"sunlight_presses", in.switches.sunlight},
         {"shadows_presses", in.switches.shadows},

@@ -59,8 +59,9 @@ struct InputSummary {
     std::uint64_t jumps = 0;                                           ///< placings elsewhere
     bool walked = false;                   ///< walls and floors held the visitor; false: it flew, or the model has no ground
     std::uint64_t returns = 0, freed = 0;  ///< of the walker: from being stuck, and out of something solid
-    double filter_lag_ms = 0;              ///< at most, of mapping and filter
-    std::uint64_t guard_violations = 0;    ///< of the input thread
+    std::uint64_t put_aside = 0, passed_through = 0;  ///< by things that move and left no room: beside them, or not at all
+    double filter_lag_ms = 0;                         ///< at most, of mapping and filter
+    std::uint64_t guard_violations = 0;               ///< of the input thread
 };
 
 /// A form that was drawn where full detail would show more. Its share of the error is measured in the pictures where it was

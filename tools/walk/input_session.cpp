@@ -70,13 +70,25 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
 
 void InputSession::begin(const Path& path, const model::Ground& ground, std::int64_t start_ns, bool real_clock,
                          const rt::Placement& placement, PathPoses* path_poses) {
+    walking_ = std::make_unique<Walking>(ground, body_, mode_);
+    begin_walking(path, ground, start_ns, real_clock, placement, path_poses);
+}
+
+void InputSession::begin(const Path& path, const model::Model& model, std::int64_t start_ns, bool real_clock,
+                         const rt::Placement& placement, PathPoses* path_poses) {
+    walking_ = std::make_unique<Walking>(model.ground, body_, mode_, &model);
+    begin_walking(path, model.ground, start_ns, real_clock, placement, path_poses);
+}
+
+void InputSession::begin_walking(const Path& path, const model::Ground& ground, std::int64_t start_ns, bool real_clock,
+                                 const rt::Placement& placement, PathPoses* path_poses) {
     tour_controller_ = std::make_unique<TourController>(path);
     if (begins_touring_) tour_controller_->begin_tour(start_ns);
-    walking_ = std::make_unique<Walking>(ground, body_, mode_);
     stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *tour_controller_, *walking_, samples_, jump_poses_,
                                               live_ ? live_->keeper() : nullptr);
     if (walking_->walker() != nullptr) clip_.emplace(ground, body_);
-    poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get(), path_poses);
+    poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get(), path_poses,
+                                            stepper_.get());
     stepper_->begin(start_ns);
     if (real_clock) thread_ = std::make_unique<InputThread>(*stepper_, placement);
 }
@@ -148,6 +160,8 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
         s.walked = walking_->walked();
         s.returns = walker->returns();
         s.freed = walker->freed();
+        s.put_aside = walker->put_aside();
+        s.passed_through = walker->passed_through();
     }
     s.filter_lag_ms = steering_->worst_lag_s() * 1e3;
     s.guard_violations = guard_violations_;

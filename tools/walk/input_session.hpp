@@ -37,6 +37,9 @@ public:
     /// A visitor walks on `ground`. `path_poses` are those of the walk if nobody steers. Both must outlive this too.
     void begin(const Path& path, const model::Ground& ground, std::int64_t start_ns, bool real_clock,
                const rt::Placement& placement, PathPoses* path_poses = nullptr);
+    /// The same on the ground of a model, of which something may move; the model must outlive this.
+    void begin(const Path& path, const model::Model& model, std::int64_t start_ns, bool real_clock,
+               const rt::Placement& placement, PathPoses* path_poses = nullptr);
     /// For the frame thread; after begin().
     [[nodiscard]] PoseSource& poses() { return *poses_; }
     /// For the prepare thread: poses that the eye jumps to by a button.
@@ -63,6 +66,8 @@ public:
 
 private:
     InputSession() = default;
+    void begin_walking(const Path& path, const model::Ground& ground, std::int64_t start_ns, bool real_clock,
+                       const rt::Placement& placement, PathPoses* path_poses);
 
     std::string source_name_;
     std::optional<LiveInput> live_;

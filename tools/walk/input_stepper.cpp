@@ -23,6 +23,7 @@ InputStepper::InputStepper(input::ReportSource& source, input::Steering& steerin
 void InputStepper::begin(std::int64_t start_ns) {
     steering_.steers.plays();  // before the input thread is there
     tick_at_ns_ = start_ns;
+    set_zero(start_ns);
     source_.begin(steering_, start_ns);
     input::NavigationSample first;
     first.pose = tour_controller_.start();
@@ -36,10 +37,13 @@ void InputStepper::step(std::int64_t now_ns) {
     const input::Lines lines = source_.drain(steering_, now_ns);
     const bool led = tour_controller_.touring() || tour_controller_.paused();  // no walls for one who is carried or stands still
     const std::uint32_t jumps = walking_.jumps();
-    input::NavigationSample sample = steering_.tick(lines, now_ns, led ? input::Ground{} : walking_.ground(steering_.flies()));
+    const double walked_s = static_cast<double>(now_ns - zero_ns_.load(std::memory_order_relaxed)) * 1e-9;
+    input::NavigationSample sample =
+        steering_.tick(lines, now_ns, led ? input::Ground{} : walking_.ground(steering_.flies(), walked_s));
     if (walking_.jumps() != jumps) {  // put elsewhere: the way there is no motion
         steering_.place(sample.pose, true);
-        sample.velocity_m_s = sample.angular_rad_s = dvec3(0.0);
+        sample.velocity_m_s = sample.angular_rad_s = sample.carried_m_s = dvec3(0.0);
+        sample.carried_rad_s = 0;
         sample.zoom_rate = 0;
     }
     if (keeper_ != nullptr) keeper_->set(steering_.safety().latched);

@@ -53,6 +53,9 @@ public:
     void step(std::int64_t now_ns);
     /// Every step that is due by `now_ns`, each at its own time: the same whenever it is called (virtual clock).
     void advance_to(std::int64_t now_ns);
+    /// For any thread: when the walk's time would have been 0, as of the newest frame. Pictures and steps show what moves as it
+    /// is at that time. Frames know it best: a display moves the grid, and a control stops the walk for a while.
+    void set_zero(std::int64_t zero_ns) { zero_ns_.store(zero_ns, std::memory_order_relaxed); }
     /// For any thread: whether a report has come, or nobody is led along the path, as of the last step.
     [[nodiscard]] bool shown_used() const { return shown_used_.load(std::memory_order_relaxed); }
 
@@ -68,6 +71,7 @@ private:
     input::StopKeeper* keeper_;
     std::uint32_t jumps_reported_ = 0;
     std::int64_t tick_at_ns_ = 0;
+    std::atomic<std::int64_t> zero_ns_{0};
     std::atomic<bool> shown_used_{false};
 };
 

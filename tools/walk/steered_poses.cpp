@@ -7,10 +7,16 @@
 namespace surefoot::walk {
 
 SteeredPoses::SteeredPoses(rt::TripleBuffer<SteeredSample>& samples, const input::MotionLimits& limits, std::int64_t period_ns,
-                           InputStepper* inline_stepper, PathPoses* path_poses)
-    : samples_(samples), limits_(limits), period_ns_(period_ns), inline_stepper_(inline_stepper), path_poses_(path_poses) {}
+                           InputStepper* inline_stepper, PathPoses* path_poses, InputStepper* timed)
+    : samples_(samples),
+      limits_(limits),
+      period_ns_(period_ns),
+      inline_stepper_(inline_stepper),
+      path_poses_(path_poses),
+      timed_(timed) {}
 
 FramePose SteeredPoses::sample(const FrameTime& time) {
+    if (timed_ != nullptr) timed_->set_zero(time.due_ns - static_cast<std::int64_t>(time.path_slot) * period_ns_);
     if (inline_stepper_ != nullptr) inline_stepper_->advance_to(time.now_ns);
     samples_.refresh();
     FramePose pose = pose_of(time);

@@ -22,9 +22,10 @@ inline double region_ahead_s(std::int64_t period_ns) {
 class SteeredPoses final : public PoseSource {
 public:
     /// `path_poses`: in place of samples while nobody has left the path; must outlive this. `inline_stepper`: on the virtual
-    /// clock, stepped here up to the frame's time; null: a thread of its own steps it.
+    /// clock, stepped here up to the frame's time; null: a thread of its own steps it. `timed`: the stepper that is notified of
+    /// the walk's time.
     SteeredPoses(rt::TripleBuffer<SteeredSample>& samples, const input::MotionLimits& limits, std::int64_t period_ns,
-                 InputStepper* inline_stepper, PathPoses* path_poses = nullptr);
+                 InputStepper* inline_stepper, PathPoses* path_poses = nullptr, InputStepper* timed = nullptr);
 
     FramePose sample(const FrameTime& time) override;
     bool latch(const FrameTime& time, FramePose& newest) override;
@@ -37,6 +38,7 @@ private:
     std::int64_t period_ns_;
     InputStepper* inline_stepper_;
     PathPoses* path_poses_;
+    InputStepper* timed_;
     std::uint32_t jumps_seen_ = 0;
 };
 

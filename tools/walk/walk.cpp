@@ -169,8 +169,7 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
 
     PathPoses path_poses(s.path.path, s.grid.period_ns, s.engine->options().device.viewport);
     if (s.input)
-        s.input->begin(s.path.path, s.engine->model().ground, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan),
-                       &path_poses);
+        s.input->begin(s.path.path, s.engine->model(), s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan), &path_poses);
     std::unique_ptr<PrepareThread> preparing;
     JumpBuffer* jump_poses = s.input ? s.input->jump_poses() : nullptr;
     RegionClip* clip = s.input ? s.input->clip() : nullptr;

@@ -192,7 +192,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     apply_seat(r, s.path.path);
 
     if (s.input && r.walking != rt::WalkingMode::fly) {
-        if (model->ground.empty())
+        if (model->ground.empty() && model->moving_ground.empty())
             s.notes.push_back(r.model_file +
                               ": The model holds nothing that blocks, so visitors fly. An older model must be baked again.");
         if (std::string warning = path_warning(model->ground, s.path.path); !warning.empty())

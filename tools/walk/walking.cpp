@@ -7,26 +7,39 @@
 #include <cmath>
 
 #include "render/model/ground/near.hpp"
+#include "render/model/model.hpp"
 #include "tools/walk/tour_controller.hpp"
 
 namespace surefoot::walk {
 
-Walking::Walking(const model::Ground& ground, const model::Body& body, rt::WalkingMode mode) : mode_(mode) {
-    if (mode != rt::WalkingMode::fly && !ground.empty()) walker_.emplace(ground, body);
+Walking::Walking(const model::Ground& ground, const model::Body& body, rt::WalkingMode mode, const model::Model* moving)
+    : mode_(mode) {
+    if (mode == rt::WalkingMode::fly) return;
+    if (moving != nullptr && !moving->moving_ground.empty())
+        walker_.emplace(*moving, body);
+    else if (!ground.empty())
+        walker_.emplace(ground, body);
 }
 
-input::Ground Walking::ground(bool flies) {
+input::Ground Walking::ground(bool flies, double time_s) {
     walks_ = walker_ && !(flies && mode_ == rt::WalkingMode::automatic);
     if (!walks_) return {};
     walked_ = true;
+    walker_->set_time(time_s);
     const auto query = [](void* walker, const dvec3& from, const dvec3& wanted, double dt_s) noexcept {
         return static_cast<model::Walker*>(walker)->walk(from, wanted, dt_s);
     };
     const auto halt = [](void* context) noexcept { static_cast<model::Walker*>(context)->halt(); };
-    return {query, &*walker_, walker_rise_m_s2, halt};
+    const auto carried = [](void* context) noexcept {
+        const model::Walker::Ride& ride = static_cast<model::Walker*>(context)->ride();
+        return input::Carried{ride.way, ride.turn_rad, ride.max_m_s, ride.max_turn_rad_s};
+    };
+    return {query, &*walker_, walker_rise_m_s2, halt, carried};
 }
 
-std::uint32_t Walking::jumps() const { return walker_ ? static_cast<std::uint32_t>(walker_->returns() + walker_->freed()) : 0; }
+std::uint32_t Walking::jumps() const {
+    return walker_ ? static_cast<std::uint32_t>(walker_->returns() + walker_->freed() + walker_->put_aside()) : 0;
+}
 
 namespace {
 

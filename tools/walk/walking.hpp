@@ -20,12 +20,14 @@ constexpr double walker_rise_m_s2 = 9.81;
 /// input's steps.
 class Walking {
 public:
-    /// Without a ground, or with `fly`, everybody flies. The ground must outlive this.
-    Walking(const model::Ground& ground, const model::Body& body, rt::WalkingMode mode);
+    /// Without a ground, or with `fly`, everybody flies. The ground must outlive this. `moving`: the ground's model; what moves
+    /// in it carries and stops the walker too. It must outlive this as well.
+    Walking(const model::Ground& ground, const model::Body& body, rt::WalkingMode mode, const model::Model* moving = nullptr);
 
-    /// What the next step asks. `flies`: the device that steers moves freely in space.
-    [[nodiscard]] input::Ground ground(bool flies);
-    /// How often the walker was put elsewhere: out of something solid, or back to where it was free.
+    /// What the next step asks. `flies`: the device that steers moves freely in space. `time_s`: since the walk began, of the
+    /// step's end.
+    [[nodiscard]] input::Ground ground(bool flies, double time_s = 0);
+    /// How often the walker was put elsewhere: out of something solid, beside what moved, or back to where it was free.
     [[nodiscard]] std::uint32_t jumps() const;
     [[nodiscard]] bool walks() const { return walks_; }
     [[nodiscard]] bool walked() const { return walked_; }  ///< at any time
