@@ -64,6 +64,13 @@ mutation N13d render/select/steps.hpp 's/return refined \? key \* hysteresis_ : 
 mutation N25a render/bake/materials.cpp 's/bleed_colours\(bled, .*?\);//' "texels that are never shown take the nearest shown one's colour"
 mutation N25b render/bake/alpha_bleed.cpp 's/material.alpha == model::AlphaMode::mask \? material.alpha_cutoff \* 0.9999F : 1e-9F/1e-9F/' "never shown is all below a mask's cutoff, not only what is clear"
 mutation N25c render/bake/alpha_bleed.cpp 's/if \(material.alpha == model::AlphaMode::opaque\) return \{\};//' "an opaque material shows every texel"
+mutation W7 render/model/ground/walker_moving.cpp 's/ carry\(part_to_s - part_from_s\);//' "floors that move carry"
+mutation W8 render/model/ground/walker_moving.cpp 's/ carry\(part_to_s - part_from_s\);//' "the same"
+mutation W8 render/model/ground/walker_moving.cpp 's/ride_.turn_rad \+= .*?;//' "who is carried turns along"
+mutation W9 render/model/ground/walker_moving.cpp 's/(keep_on_floor\(was_pushed\);)\s+evade\(.*?\);/$1/' "what leaves no room is evaded"
+mutation W9 render/model/ground/walker.cpp 's/if \(moving_.exist\(\)\) first = .*?;//' "steps stop at what moves"
+mutation W10 render/model/ground/walker_moving.cpp 's/, 1, max_step_parts\)/, 1, 1)/' "what is fast moves in short parts"
+mutation W10 render/model/ground/walker_moving.cpp 's/ \|\| !reaches\(at\)//' "nobody is put aside through a wall"
 
 rows_of test_walk_real
 mutation Workers tools/walk/worker_places.cpp 's/= rt::place_thread\(0, wanted\);/= Result<void>();/' "workers placed as they start"

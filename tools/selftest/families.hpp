@@ -21,5 +21,6 @@ std::span<const Row> files_rows();
 std::span<const Row> texture_rows();
 std::span<const Row> alpha_edge_rows();
 std::span<const Row> walking_rows();
+std::span<const Row> riding_rows();
 
 }  // namespace surefoot::selftest

@@ -75,7 +75,7 @@ std::span<const Row> rows() {
         std::vector<Row> list;
         for (const auto family : {origin_rows(), depth_rows(), near_and_inside_rows(), off_axis_rows(), behind_others_rows(),
                                   geometry_rows(), transform_rows(), polygon_rows(), budgets_and_curves_rows(), long_runs_rows(),
-                                  files_rows(), texture_rows(), alpha_edge_rows(), walking_rows()})
+                                  files_rows(), texture_rows(), alpha_edge_rows(), walking_rows(), riding_rows()})
             list.insert(list.end(), family.begin(), family.end());
         return list;
     }();
