@@ -203,21 +203,7 @@ bool BakeContext::make_clusters() {
     tree = cluster_objects(objects, in_rooms, model, 8);
     clusters.resize(tree.clusters.size());
     const auto n = static_cast<std::uint32_t>(objects.size());
-    std::vector<std::vector<std::uint32_t>> by_height;
-    members.resize(tree.clusters.size());
-    std::vector<std::uint32_t> height(tree.clusters.size(), 0);
-    for (std::uint32_t c = 0; c < tree.clusters.size(); ++c) {  // children come first
-        for (const std::uint32_t e : tree.clusters[c].children) {
-            if (e < n) {
-                members[c].push_back(e);
-            } else {
-                members[c].insert(members[c].end(), members[e - n].begin(), members[e - n].end());
-                height[c] = std::max(height[c], height[e - n] + 1);
-            }
-        }
-        if (by_height.size() <= height[c]) by_height.resize(height[c] + 1);
-        by_height[height[c]].push_back(c);
-    }
+    const std::vector<std::vector<std::uint32_t>> by_height = clusters_by_height(tree, n, members);
     const ProxyInput input = proxy_input();
     Stage stage(progress, "clusters", tree.clusters.size());
     std::atomic<bool> go{true};

@@ -124,4 +124,24 @@ ClusterTree grow_clusters_apart(std::span<const Box> objects, const std::vector<
     return out;
 }
 
+std::vector<std::vector<std::uint32_t>> clusters_by_height(const ClusterTree& tree, std::uint32_t objects,
+                                                           std::vector<std::vector<std::uint32_t>>& members) {
+    std::vector<std::vector<std::uint32_t>> by_height;
+    members.assign(tree.clusters.size(), {});
+    std::vector<std::uint32_t> height(tree.clusters.size(), 0);
+    for (std::uint32_t c = 0; c < tree.clusters.size(); ++c) {  // children come first
+        for (const std::uint32_t e : tree.clusters[c].children) {
+            if (e < objects) {
+                members[c].push_back(e);
+            } else {
+                members[c].insert(members[c].end(), members[e - objects].begin(), members[e - objects].end());
+                height[c] = std::max(height[c], height[e - objects] + 1);
+            }
+        }
+        if (by_height.size() <= height[c]) by_height.resize(height[c] + 1);
+        by_height[height[c]].push_back(c);
+    }
+    return by_height;
+}
+
 }  // namespace surefoot::bake

@@ -30,4 +30,8 @@ ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t max_childr
 /// other.
 ClusterTree grow_clusters_apart(std::span<const Box> objects, const std::vector<bool>& kind, std::uint32_t max_children);
 
+/// Clusters without other clusters below them, then those above, and so on. members: of each cluster, all objects below it.
+std::vector<std::vector<std::uint32_t>> clusters_by_height(const ClusterTree& tree, std::uint32_t objects,
+                                                           std::vector<std::vector<std::uint32_t>>& members);
+
 }  // namespace surefoot::bake

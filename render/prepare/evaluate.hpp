@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,12 @@ struct RegionView {
     float object_mps = 0;               ///< of what is evaluated, where it moves
 };
 
+/// The value, unless it is infinite or no number.
+inline double finite_or(double value, double otherwise) { return std::isfinite(value) ? value : otherwise; }
+
+/// The view of the frame's region. target_factor: on the error from which nodes are opened.
+RegionView region_view(const PreparedFrame& frame, const PrepareOptions& options, float target_factor, double speed_mps,
+                       double turn_rps);
 /// The view as a moving thing has it: turned and moved back, so that the thing stands at rest. The region grows by its drift.
 RegionView seen_at_rest(const RegionView& view, const model::MovingNode& moving);
 

@@ -43,8 +43,6 @@ constexpr std::uint32_t parents_a_chunk = 64, visits_a_chunk = 512;
 constexpr std::uint32_t max_hidden = 4096;      // of which outlines are kept
 constexpr std::uint32_t min_slots = 1U << 15U;  // children looked at before they are closed up: bounds the room for them
 
-double finite_or(double value, double otherwise) { return std::isfinite(value) ? value : otherwise; }
-
 Region cleaned(const Region& region, const Box& root) {
     Region r = region;
     const dvec3& p = r.centre.position;
@@ -95,7 +93,6 @@ struct Preparer::Impl {
     Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o);
     template <class Body>
     void for_chunks(std::uint32_t count, const Body& body);
-    RegionView view_of(const PreparedFrame& frame, double speed_mps, double turn_rps) const;
     [[nodiscard]] const Box& box_of(Index node, Box& now) const;
     NodeVisit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
     void visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j);
@@ -176,31 +173,6 @@ void Preparer::Impl::for_chunks(std::uint32_t count, const Body& body) {
             tbb::simple_partitioner());
     });
     loop.joined();
-}
-
-RegionView Preparer::Impl::view_of(const PreparedFrame& frame, double speed_mps, double turn_rps) const {
-    const Region& region = frame.region;
-    const model::Viewport& viewport = frame.viewport;
-    const float resolution = frame.resolution;
-    const Pose& pose = region.centre;
-    RegionView view;
-    view.eye = pose.position;
-    view.radius_m = region.radius_m;
-    view.scale = model::scaled(model::make_view_scale(pose, viewport), resolution);
-    view.wide = model::make_view_scale(pose, viewport, region.angle_rad);
-    view.resolved_rad = static_cast<float>(resolved_rad(frame));
-    const double drawn_rad = double{static_cast<float>(model::pixel_angle(pose, viewport))} / resolution;
-    const double target =
-        options.target_error_rad > 0.0 ? options.target_error_rad : std::max(0.125 * drawn_rad, frame.acuity_rad);
-    view.target_error_rad = static_cast<float>(target) * used_factor;
-    view.full_depth = options.full_depth;
-    view.without = frame.without;
-    view.full_factor = frame.full_factor;
-    view.coarse_factor = frame.coarse_factor;
-    view.focus_strength = static_cast<float>(std::clamp(finite_or(options.focus_strength, 0.0), 0.0, 1.0));
-    view.speed_mps = static_cast<float>(std::clamp(finite_or(speed_mps, 0.0), 0.0, 1e4));
-    view.turn_rps = static_cast<float>(std::clamp(finite_or(turn_rps, 0.0), 0.0, 1e3));
-    return view;
 }
 
 /// A node's box while the set is used. now: room for it, if it moves.
@@ -457,7 +429,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.last_turn_rps = turn_rps;
     s.used_factor = s.target_factor;
     s.moving.set_span(out.from_s, out.to_s);
-    const RegionView view = s.view_of(out, speed_mps, turn_rps);
+    const RegionView view = region_view(out, s.options, s.used_factor, speed_mps, turn_rps);
     out.target_error_rad = view.full_depth ? 0.0F : view.target_error_rad;
 
     const model::Frustum frustum =
