@@ -16,7 +16,7 @@ namespace surefoot::bake {
 namespace {
 
 constexpr std::uint32_t covered_px = 64;
-constexpr double wanted_cover = 0.6;    // of full detail, when a level grows
+constexpr double wanted_cover = 0.8;    // of full detail, when a level grows
 constexpr double max_growth = 2.5;      // of a part's length: as of cards in clusters
 constexpr float max_grown_loss = 1.1F;  // of what the level lost before it grew
 
