@@ -18,10 +18,13 @@ namespace surefoot {
 class EffectDwell {
 public:
     static constexpr std::uint32_t min_wait = 90, max_wait = 1440;  ///< frames: 3 to 48 s at 30 Hz
-    static constexpr float value_share = 0.75F;                     ///< of its value, for which it is offered while it is away
+    /// At first, while resolution and corrections are found: after so many frames without it, a fall is taken back.
+    static constexpr std::uint32_t start_frames = 30, start_wait = 5;
+    static constexpr float value_share = 0.75F;  ///< of its value, for which it is offered while it is away
 
     /// Whether it is offered to the next frame. Once a frame.
     bool offer() {
+        frames_ = std::min(frames_ + 1, start_frames);
         if (left_ > 0) --left_;
         return left_ == 0;
     }
@@ -32,7 +35,7 @@ public:
 private:
     static constexpr std::uint32_t long_stay = 8;  ///< waits
     bool away_ = false;
-    std::uint32_t wait_ = 0, left_ = 0, kept_ = 0;  ///< frames; the last wait, 0: it never fell
+    std::uint32_t frames_ = 0, wait_ = 0, left_ = 0, kept_ = 0;  ///< frames; the last wait, 0: it never fell
 };
 
 /// All groups of a device, and what the frames with them learnt.

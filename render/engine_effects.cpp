@@ -14,7 +14,10 @@ void EffectDwell::answer(bool bought) {
     }
     if (away_) return;  // its wait is over, and it goes on
     const bool too_short = wait_ > 0 && kept_ < long_stay * wait_;
-    left_ = wait_ = too_short ? std::min(2 * wait_, max_wait) : min_wait;
+    if (frames_ < start_frames)
+        left_ = start_wait;
+    else
+        left_ = wait_ = too_short ? std::min(2 * wait_, max_wait) : min_wait;
     kept_ = 0;
     away_ = true;
 }

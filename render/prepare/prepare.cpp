@@ -471,7 +471,7 @@ const ValueCurve& Preparer::value_at(float resolution) {
     s.worker_cpu_ns.store(0, std::memory_order_relaxed);
     s.tried.resolution = resolution;
     s.make_room(s.tried);
-    const RegionView view = s.view_of(s.tried, s.last_speed_mps, s.last_turn_rps);
+    const RegionView view = region_view(s.tried, s.options, s.used_factor, s.last_speed_mps, s.last_turn_rps);
     s.evaluate_all(view, s.tried);
     s.set_values(view, s.tried);
     s.tried.cpu_us = 1e-3 * static_cast<double>(rt::own_cpu_ns() - cpu_start + s.worker_cpu_ns.load());

@@ -126,6 +126,13 @@ TEST(EngineEffects, FormsHaveTheTimeOfTheOneThatIsLeftOut) {
 
 TEST(EngineEffects, ADroppedOneStaysAwayForSecondsAndLongerEachTime) {
     EffectForest f(0.0F, 1.0F);
+    f.draw(0);
+    for (int i = 0; i < 4; ++i) {
+        f.draw(ample_us);
+        EXPECT_TRUE(f.sale(fog).dropped) << i;
+    }
+    for (int i = 0; i < 30; ++i) f.draw(ample_us);
+    EXPECT_FALSE(f.sale(fog).dropped) << "a fall at the start is soon taken back";
     std::vector<std::uint32_t> away;
     for (int fall = 0; fall < 4; ++fall) {
         f.draw(0);
@@ -149,6 +156,7 @@ TEST(EngineEffects, ADroppedOneStaysAwayForSecondsAndLongerEachTime) {
 TEST(EngineEffects, AtAnyBudgetNoneComesAndGoesFromFrameToFrame) {
     EffectForest f(0.4F, 0.4F);
     const double full_us = f.draw(ample_us).first;
+    for (int i = 0; i < 30; ++i) f.draw(ample_us);
     std::array<std::uint32_t, 2> changed_at{};
     std::array<bool, 2> was{false, false};
     int changes = 0;

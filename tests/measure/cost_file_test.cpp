@@ -139,11 +139,11 @@ TEST_F(CostFile, with_a_wrong_price_is_refused_by_its_key) {
         return read ? std::string("ok") : read.error().what;
     };
     EXPECT_EQ(wrong({{model::effect_fog, 1, 1, 1}}), "ok");
-    EXPECT_NE(wrong({{model::effect_fog | model::effect_sun, 1, 1, 1}}).find("'effect'"), std::string::npos);
-    EXPECT_NE(wrong({{0, 1, 1, 1}}).find("'effect'"), std::string::npos);
-    EXPECT_NE(wrong({{model::effect_fog, 1, 1, 1}, {model::effect_fog, 1, 1, 1}}).find("'effect'"), std::string::npos);
-    EXPECT_NE(wrong({{model::effect_fog, -1, 1, 1}}).find("'submit_ns_per_triangle'"), std::string::npos);
-    EXPECT_NE(wrong({{model::effect_fog, 1, 1, 1e9F}}).find("'raster_ns_per_pixel'"), std::string::npos);
+    EXPECT_NE(wrong({{model::effect_fog | model::effect_sun, 1, 1, 1}}).find("'price.effect'"), std::string::npos);
+    EXPECT_NE(wrong({{0, 1, 1, 1}}).find("'price.effect'"), std::string::npos);
+    EXPECT_NE(wrong({{model::effect_fog, 1, 1, 1}, {model::effect_fog, 1, 1, 1}}).find("'price.effect'"), std::string::npos);
+    EXPECT_NE(wrong({{model::effect_fog, -1, 1, 1}}).find("'price.submit_ns_per_triangle'"), std::string::npos);
+    EXPECT_NE(wrong({{model::effect_fog, 1, 1, 1e9F}}).find("'price.raster_ns_per_pixel'"), std::string::npos);
 }
 
 TEST_F(CostFile, without_blur_and_enlarging_keeps_the_constants_and_its_hash) {
