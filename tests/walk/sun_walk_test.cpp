@@ -1,6 +1,8 @@
 // Light of a walk: sunlight as a setting, switches by a device, and an hour that runs, with the same cuts.
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -18,6 +20,9 @@ TEST(SunWalk, WithoutItNoFrameHasItAndPicturesAreComparedWithoutIt) {
     request.width = 160;
     request.height = 90;
     request.pictures = 3;
+    model::CostModel costs = model::default_costs();
+    costs.prices = {{model::effect_sun, 0, 0, 0}};  // what it saves would buy other forms
+    request.given_costs = std::make_shared<const model::CostModel>(costs);
     const walk::WalkOutcome with = test::walk(request);
     request.sunlight = false;
     const walk::WalkOutcome without = test::walk(request);
