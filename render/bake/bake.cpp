@@ -69,6 +69,7 @@ struct BakeContext {
     std::vector<float> covered{};  ///< MeasuredLosses::covered
 
     ProxyInput proxy_input() const;
+    void adopt_materials();
     void place_objects();
     void adopt_forms(std::vector<std::vector<MeshForm>> by_mesh);
     bool make_forms();
@@ -103,6 +104,18 @@ ProxyInput BakeContext::proxy_input() const {
     input.hidden = hidden;
     input.slack = chain_options(options, proxy_or_none).slack;
     return input;
+}
+
+void BakeContext::adopt_materials() {
+    cut_out = cut_out_materials(scene);
+    hidden = hidden_materials(scene, model.provenance.warnings);
+    proxy = add_materials(scene, model);
+    mark_vertex_colours(scene, model);
+    set_own_light(scene, options.sun, options.fog_visibility_m.value_or(scene.fog_visibility_m), model);
+    bool coloured = false;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        coloured |= (model.materials[m].effects & (model::effect_texture | model::effect_vertex_colour)) != 0;
+    proxy_or_none = coloured ? proxy : model::none;
 }
 
 void BakeContext::place_objects() {
@@ -425,20 +438,7 @@ bool BakeContext::measure_pictures() {
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
     BakeContext context{scene, options, progress};
-    context.cut_out = cut_out_materials(scene);
-    context.hidden = hidden_materials(scene, context.model.provenance.warnings);
-    context.proxy = add_materials(scene, context.model);
-    mark_vertex_colours(scene, context.model);
-    if (scene.sun) context.model.sun_direction = scene.sun->towards;
-    if (options.sun) context.model.sun_direction = model::towards_sun(*options.sun);
-    if (options.sun) context.model.light = {options.sun->day, options.sun->latitude_deg};
-    context.model.light.fog_visibility_m = static_cast<float>(options.fog_visibility_m.value_or(scene.fog_visibility_m));
-    if (context.model.light.fog_visibility_m > 0)
-        for (model::Material& material : context.model.materials) material.effects |= model::effect_fog;
-    bool coloured = false;
-    for (std::size_t m = 0; m < scene.materials.size(); ++m)
-        coloured |= (context.model.materials[m].effects & (model::effect_texture | model::effect_vertex_colour)) != 0;
-    context.proxy_or_none = coloured ? context.proxy : model::none;
+    context.adopt_materials();
     context.place_objects();
     bool done = true;
     const int workers =

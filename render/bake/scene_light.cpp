@@ -87,6 +87,18 @@ std::optional<SceneLight> measure_scene_light(const importer::Scene& scene, cons
     return found;
 }
 
+void set_own_light(const importer::Scene& scene, const std::optional<model::SunTime>& time, double fog_visibility_m,
+                   model::Model& model) {
+    if (scene.sun) model.sun_direction = scene.sun->towards;
+    if (time) {
+        model.sun_direction = model::towards_sun(*time);
+        model.light = {time->day, time->latitude_deg};
+    }
+    model.light.fog_visibility_m = static_cast<float>(fog_visibility_m);
+    if (model.light.fog_visibility_m > 0)
+        for (model::Material& material : model.materials) material.effects |= model::effect_fog;
+}
+
 void fill_scene_light(model::Model& model) {
     if (!model.sun_seen.empty()) model.sun_seen.resize(model.vertices.size(), model::always_in_sun);
     if (!model.lamp_light.empty()) model.lamp_light.resize(model.vertices.size());

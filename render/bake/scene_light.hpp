@@ -12,6 +12,7 @@
 #include "render/bake/sky_sides.hpp"
 #include "render/import/scene.hpp"
 #include "render/model/model.hpp"
+#include "render/model/sun_time.hpp"
 #include "rt/base/progress.hpp"
 
 namespace surefoot::bake {
@@ -21,6 +22,10 @@ struct SceneLight {
     Openness openness;
     BakedLight baked;
 };
+
+/// The model's own sun, by the time or the scene, and its fog. Materials are there already.
+void set_own_light(const importer::Scene& scene, const std::optional<model::SunTime>& time, double fog_visibility_m,
+                   model::Model& model);
 
 /// What is opaque in a scene, and its lamps: ready for rays.
 struct LightRays {
