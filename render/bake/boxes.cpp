@@ -150,7 +150,8 @@ std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs, const std::vec
     for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
         const Node& node = model_.nodes[n];
         const bool had = boxes_[n].shown_faces() > 0;
-        const bool keeps = had && box_covers(model_, node, covered) && is_best_somewhere(node, costs);
+        const bool whole = node.parent == model::none;  // from far off all of the scene is one picture
+        const bool keeps = had && (whole || box_covers(model_, node, covered)) && is_best_somewhere(node, costs);
         if (had && !keeps) boxes_[n].faces = {};
         left += keeps ? 1 : 0;
         for (Index r = node.first_rep + (had && !keeps ? 1 : 0); r < node.first_rep + node.rep_count; ++r)

@@ -107,7 +107,7 @@ TEST(Branches, HaveNoSailBetweenThem) {
                 EXPECT_LE(counted.beside, 0.5 * counted.all) << "node " << n << ", " << m->reps[r].triangles << " triangles";
             }
         }
-        EXPECT_GE(forms, 5U);
+        EXPECT_GE(forms, 4U);
     }
 }
 
