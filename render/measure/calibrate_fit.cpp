@@ -227,7 +227,7 @@ std::vector<FrameSample> priced(std::span<const FrameSample> samples, float ns_p
 
 FrameFit fit_frames(std::span<const FrameSample> samples, const model::FrameCombine& prior) {
     constexpr std::array<float, 4> tried_ns{0.25F, 0.5F, 1, 2};  // few, so that noise chooses seldom
-    constexpr double clearly = 0.97, min_gain = 1e-5;  // of the loss without a price, and for each sample: rounding is no gain
+    constexpr double clearly = 0.97, min_gain = 1e-6;  // of the loss without a price, and for each sample: rounding is no gain
     FrameFit best{fit_combine(samples, prior), 0};
     double to_beat = clearly * huber_loss(samples, best.combine) - min_gain * static_cast<double>(samples.size());
     for (const float ns : tried_ns) {
