@@ -23,7 +23,8 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->draws.plays();  // nobody else has it yet
     impl->model = std::move(model);
     impl->costs = costs;
-    if (impl->costs.prices.empty()) impl->costs.prices = effects::usual_prices();
+    // A table that was measured before effects had prices keeps none: those of another machine would mislead.
+    if (impl->costs.prices.empty() && !impl->costs.calibrated) impl->costs.prices = effects::usual_prices();
     impl->options = options;
     auto selector = select::selector_named(options.selector);
     if (!selector) return selector.error();
@@ -226,11 +227,7 @@ void Engine::Impl::take_filter() {
     for (std::size_t i = 0; i < offered.offered().size(); ++i)
         if (offered.offered()[i].kind == select::ItemKind::filter) filtered = cut.bought.has(i);
     dwell.answer(filtered);
-    if (!filtered) {
-        filter_us = 0;
-        return;
-    }
-    price_slices();
+    if (!filtered) filter_us = 0;
 }
 
 bool Engine::bought(select::ItemKind kind, std::uint32_t what) const {
@@ -272,8 +269,9 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.last_frame_us = 0;
     e.offers_used = true;
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
-    e.take_effects(prepared);
     e.take_filter();
+    e.take_effects(prepared);
+    if (e.filtered || e.lever.shown != 0) e.price_slices();
     return e.cut;
 }
 

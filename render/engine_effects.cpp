@@ -91,6 +91,7 @@ void Engine::Impl::offer_effects(const prepare::PreparedFrame& set, double room_
         sale.dropped = before.dropped;
         sale.rate = before.dropped ? before.rate : set.effect_value[g] / us;
         EffectDwell& of_group = lever.dwell[g];
+        sale.dropped = before.dropped || of_group.away();
         const float worth_now = (of_group.away() ? EffectDwell::value_share : 1.0F) * set.effect_value[g];
         if (!of_group.offer() || !offered.offer({select::ItemKind::effect, lever.groups[g].mask, us, worth_now})) us = 0;
     }
@@ -101,32 +102,35 @@ void Engine::Impl::take_effects(const prepare::PreparedFrame& set) {
     if (lever.count == 0) return;
     lever.left_out = lever.shown = 0;
     lever.spent_us = 0;
+    std::array<bool, prepare::max_effect_groups> shows{};
     for (std::size_t g = 0; g < lever.count; ++g) {
+        if (!by_budget || (lever.groups[g].own & ~hidden) == 0) continue;
+        shows[g] = lever.offered_us[g] > 0.0F ? was_bought({select::ItemKind::effect, lever.groups[g].mask})
+                                              : !(more_us(combine(), lever.forms, lever.costs[g]) > 0.0F);
+        if (!shows[g]) lever.left_out |= lever.groups[g].mask;
+    }
+    for (std::size_t g = 0; g < lever.count; ++g) {
+        if (!by_budget || (lever.groups[g].own & ~hidden) == 0) continue;
         const EffectGroup& group = lever.groups[g];
         EffectSale& sale = lever.sales[g];
-        if ((group.own & ~hidden) == 0 || !by_budget) continue;
-        bool shows = !(more_us(combine(), lever.forms, lever.costs[g]) > 0.0F);
+        shows[g] = shows[g] && (group.own & ~lever.left_out) != 0;  // shadows go with the sun
         if (lever.offered_us[g] > 0.0F) {
-            shows = was_bought({select::ItemKind::effect, group.mask});
-            sale.fell = !shows && !sale.dropped;
-            if (shows && sale.dropped) sale.rate = set.effect_value[g] / lever.offered_us[g];
-            sale.dropped = !shows;
-            lever.dwell[g].answer(shows);
-            if (shows) lever.spent_us += static_cast<double>(lever.offered_us[g]);
+            sale.fell = !shows[g] && !sale.dropped;
+            if (shows[g] && sale.dropped) sale.rate = set.effect_value[g] / lever.offered_us[g];
+            sale.dropped = !shows[g];
+            lever.dwell[g].answer(shows[g]);
+            if (shows[g]) lever.spent_us += static_cast<double>(lever.offered_us[g]);
         }
-        if (shows)
-            lever.shown |= group.own;
-        else
-            lever.left_out |= group.mask;
+        if (shows[g]) lever.shown |= group.own;
     }
     lever.shown &= ~(lever.left_out | hidden) & set.without;
     learn_effects();
 }
 
-/// The forms of the new cut, and what the groups cost on them. Then the slices' costs are with what is shown.
+/// The forms of the new cut, and what the groups cost on them.
 void Engine::Impl::learn_effects() {
     const std::vector<prepare::Choice>& choices = prepared->choices;
-    lever.known = true;
+    lever.known = !cut.items.empty();  // where nothing was in view, the next frame goes by its set
     lever.forms = {};
     lever.costs = {};
     for (const select::CutItem& item : cut.items) {
@@ -135,7 +139,6 @@ void Engine::Impl::learn_effects() {
         for (std::size_t g = 0; g < lever.count; ++g)
             lever.costs[g] += effects_of(choice.rep, choice.surface_px, lever.groups[g].own);
     }
-    if (lever.shown != 0) price_slices();
 }
 
 /// As what they hold is drawn.

@@ -139,8 +139,10 @@ void add_carried(const MotionState& state, NavigationSample& sample) {
     const Carried& carried = state.carried;
     sample.max_carried_m_s = carried.max_m_s, sample.max_carried_rad_s = carried.max_rad_s;
     if (carried.way == dvec3(0.0) && carried.turn_rad == 0) return;
-    sample.carried_m_s = carried.way / state.carried_s;
-    sample.carried_rad_s = carried.turn_rad / state.carried_s;
+    // After a pause the way is that of all of it. The prediction goes by the limits.
+    const double speed = glm::length(carried.way) / state.carried_s, turn = carried.turn_rad / state.carried_s;
+    sample.carried_m_s = carried.way * (std::min(speed, carried.max_m_s) / std::max(speed, 1e-12) / state.carried_s);
+    sample.carried_rad_s = std::clamp(turn, -carried.max_rad_s, carried.max_rad_s);
     sample.velocity_m_s += dvec3(sample.carried_m_s.x, 0, sample.carried_m_s.z);  // rise_m_s has the rest
     sample.angular_rad_s.y += sample.carried_rad_s;
 }

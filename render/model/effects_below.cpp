@@ -47,10 +47,34 @@ std::vector<RegionEffects> effects_below(const Model& model) {
     return out;
 }
 
+namespace {
+
+/// The root of what stands still: what moves is a tree beside it.
+Index root_of_still(const Model& model) {
+    if (model.motions.empty()) return 0;
+    std::vector<bool> still(model.nodes.size(), false);
+    for (std::size_t n = model.nodes.size(); n-- > 0;) {  // children come after their parents
+        const Node& node = model.nodes[n];
+        if (node.child_count == 0) still[n] = motion_of(model, node) == none;
+        for (std::uint32_t c = 0; c < node.child_count; ++c) still[n] = still[n] || still[node.first_child + c];
+    }
+    Index root = 0;
+    while (model.nodes[root].child_count == 2) {
+        const Index first = model.nodes[root].first_child;
+        if (still[first] == still[first + 1]) break;
+        root = still[first] ? first : first + 1;
+    }
+    return root;
+}
+
+}  // namespace
+
 bool has_rooms_apart(const Model& model) {
-    if (model.nodes.empty() || model.nodes[0].child_count != 2 || (model.called_for() & effect_openness) == 0) return false;
+    if (model.nodes.empty() || (model.called_for() & effect_openness) == 0) return false;
+    const Node& root = model.nodes[root_of_still(model)];
+    if (root.child_count != 2) return false;
     const std::vector<RegionEffects> below = effects_below(model);
-    const RegionEffects &rooms = below[model.nodes[0].first_child], &open = below[model.nodes[0].first_child + 1];
+    const RegionEffects &rooms = below[root.first_child], &open = below[root.first_child + 1];
     return ((rooms.full | rooms.coarse) & effect_sun) == 0 && (rooms.full & effect_openness) != 0 &&
            (open.full & effect_sun) != 0;
 }

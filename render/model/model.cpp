@@ -113,6 +113,8 @@ Check check_motions(const Model& m) {
     if (m.motions.size() > max_motions || m.motion_keys.size() > max_motion_keys)
         return Error{"motions", "The motions or their keys are too many", "Bake the model again", ErrorKind::damaged};
     std::vector<std::uint32_t> depth(m.motions.size(), 1);
+    std::vector<std::uint64_t> keys_of(m.motions.size());  // those of what carries it included
+    std::uint64_t own_keys = 0, all_keys = 0;
     for (std::size_t i = 0; i < m.motions.size(); ++i) {
         const Motion& motion = m.motions[i];
         if (!finite(motion.pivot)) return wrong("motions", i, "The pivot is not finite");
@@ -123,8 +125,14 @@ Check check_motions(const Model& m) {
         if (motion.outer != none && motion.outer >= i) return wrong("motions", i, "What carries it does not come before it");
         if (motion.outer != none) depth[i] = depth[motion.outer] + 1;
         if (depth[i] > max_motion_depth) return wrong("motions", i, "Too many motions carry each other");
-        if (Check keys = check_keys(m, i); !keys) return keys;
+        keys_of[i] = motion.key_count + (motion.outer != none ? keys_of[motion.outer] : 0);
+        own_keys += motion.key_count;
+        all_keys += keys_of[i];
     }
+    if (own_keys > m.motion_keys.size() || all_keys > 2 * std::uint64_t{max_motion_keys})
+        return Error{"motions", "Motions share keys, or carry too many of them", "Bake the model again", ErrorKind::damaged};
+    for (std::size_t i = 0; i < m.motions.size(); ++i)
+        if (Check keys = check_keys(m, i); !keys) return keys;
     return {};
 }
 

@@ -157,11 +157,10 @@ EffectFinding motion_finding(const Model& model) {
     return finding;
 }
 
-Box rest_box_of(const Model& model, const Node& node) {
-    if (motion_of(model, node) == none) return node.box;
+namespace {
+
+Box leaf_at_rest(const Model& model, const Node& node) {
     Box box;
-    for (std::uint32_t c = 0; c < node.child_count; ++c) box.grow(rest_box_of(model, model.nodes[node.first_child + c]));
-    if (node.child_count > 0) return box;
     const Representation& rep = model.reps[node.first_rep + node.rep_count - 1];
     const Placement& placement = model.placements[rep.placement];
     const dmat3 linear(placement.linear);
@@ -169,6 +168,41 @@ Box rest_box_of(const Model& model, const Node& node) {
         for (const vec3& corner : {a, b, c}) box.grow(placement.origin + linear * dvec3(corner));
     });
     return box;
+}
+
+}  // namespace
+
+Box rest_box_of(const Model& model, const Node& node) {
+    if (motion_of(model, node) == none) return node.box;
+    Box box;
+    std::vector<const Node*> open{&node};  // a tree from a file may be deep
+    while (!open.empty()) {
+        const Node& next = *open.back();
+        open.pop_back();
+        if (motion_of(model, next) == none) {
+            box.grow(next.box);
+        } else if (next.child_count == 0) {
+            box.grow(leaf_at_rest(model, next));
+        } else {
+            for (std::uint32_t c = 0; c < next.child_count; ++c) open.push_back(&model.nodes[next.first_child + c]);
+        }
+    }
+    return box;
+}
+
+std::vector<Box> rest_boxes_of(const Model& model) {
+    std::vector<Box> out(model.nodes.size());
+    for (std::size_t n = model.nodes.size(); n-- > 0;) {  // children come after their parents
+        const Node& node = model.nodes[n];
+        if (motion_of(model, node) == none) {
+            out[n] = node.box;
+        } else if (node.child_count == 0) {
+            out[n] = leaf_at_rest(model, node);
+        } else {
+            for (std::uint32_t c = 0; c < node.child_count; ++c) out[n].grow(out[node.first_child + c]);
+        }
+    }
+    return out;
 }
 
 }  // namespace surefoot::model

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "render/model/effects.hpp"
 #include "rt/base/geometry.hpp"
@@ -64,5 +65,7 @@ EffectFinding motion_finding(const Model& model);
 
 /// The box of a node's full detail at rest: Node::box, unless it moves. Passes over its triangles.
 Box rest_box_of(const Model& model, const Node& node);
+/// The same of every node.
+std::vector<Box> rest_boxes_of(const Model& model);
 
 }  // namespace surefoot::model

@@ -46,13 +46,14 @@ Box MovingNode::box() const {
 MovingNodes::MovingNodes(const Model& model) : model_(&model) {
     if (model.motions.empty()) return;
     slot_of_node_.assign(model.nodes.size(), none);
+    const std::vector<Box> rest = rest_boxes_of(model);
     std::vector<Box> moved_by(model.motions.size());  // all that a motion moves: its limits are worked out once
     for (Index n = 0; n < model.nodes.size(); ++n) {
         const Node& node = model.nodes[n];
         Slot slot;
         slot.motion = motion_of(model, node);
         if (slot.motion == none) continue;
-        slot.rest = rest_box_of(model, node);
+        slot.rest = rest[n];
         moved_by[slot.motion].grow(slot.rest);
         slot_of_node_[n] = static_cast<Index>(slots_.size());
         slots_.push_back(slot);

@@ -69,7 +69,7 @@ forms_group() {
   local at=$work/forms scene node words forms_row=10 side build path lift input picture_work=$work/picture made=' '
   command -v convert >/dev/null || { echo "tests/bench/run: forms wants convert (Debian: imagemagick)" >&2; failed=1; return 0; }
   mkdir -p "$at/state" "$picture_work"
-  rm -f "$at"/strip-*.png "$at/body.html"
+  rm -f "$at"/strip-*.png "$at/body.html" "$at"/*.walk
   while read -r scene node words <&4; do
     if [[ $made != *" $scene "* ]]; then
       made+="$scene "

@@ -21,6 +21,11 @@ full_scene() { # NAME SCENE PATH LIFT
   full_side "$old" old "$1" "$2" || { failed=1; return 0; }
   full_side "$new" new "$1" "$2" || { failed=1; return 0; }
   measure "full difference $1" "$build/tests/bench_picture_difference" "$at/$1-new" "$at/$1-old" || { failed=1; return 0; }
+  if (( $(value pictures) != full_poses )); then
+    echo "tests/bench/run: $1: $(value pictures) pictures are there, not $full_poses" >&2
+    failed=1
+    return 0
+  fi
   keep full_detail_same "$(value worst_within_1_percent)" --scene "$1" \
     --note "Mean of $(value pictures) poses: $(value within_1_percent) %, $(value psnr_db) dB; the worst: $(value least_alike)."
   echo "tests/bench/run: $1: $(value worst_within_1_percent) % of the worst pose within 1/255 ($at/$1-new/$(value least_alike) and $1-old)" >&2

@@ -139,7 +139,7 @@ function on_page(promise) { return bound_of[promise] != "-" && group_of[promise]
 function missed_list(    p, scenes, count, i, n, key, reason, reasons, order_of_reasons, of_promise, text, r) {
   for (p = 1; p <= promises; ++p) {
     split("", scenes); split("", of_promise)
-    count = on_page(order[p]) ? scenes_of(order[p], scenes) : 0
+    count = bound_of[order[p]] == "-" ? 0 : scenes_of(order[p], scenes)
     for (i = 1; i <= count; ++i) {
       key = order[p] SUBSEP scenes[i]; n = newest[key]
       if (judged_of[n] != "false") continue

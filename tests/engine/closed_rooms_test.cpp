@@ -9,7 +9,9 @@
 
 #include "render/bake/bake.hpp"
 #include "render/engine.hpp"
+#include "render/model/effects_below.hpp"
 #include "tests/bake/house_scene.hpp"
+#include "tests/bake/moving_scene.hpp"
 
 namespace surefoot {
 namespace {
@@ -62,6 +64,19 @@ TEST(ClosedRooms, AreDrawnWithoutTheSunFromWithin) {
         EXPECT_EQ(drawn.sun, 0) << i << ": " << drawn.names;
         EXPECT_GT(drawn.no_sun, 0) << i;
     }
+}
+
+TEST(ClosedRooms, StandApartAlsoWhereSomethingMoves) {
+    importer::Scene scene = lit::house_scene();
+    const importer::Index ball = bake::add_mesh(scene, bake::ball(12, 1), "ball");
+    bake::place_moving(scene, ball, dvec3(30, 3, 30), bake::add_lift(scene, dvec3(0, 12, 0), 10));
+    bake::BakeOptions options;
+    options.quality = bake::Quality::full;
+    const auto moving = bake::bake(scene, options, {});
+    ASSERT_TRUE(moving.ok());
+    ASSERT_FALSE(moving->motions.empty());
+    EXPECT_TRUE(model::has_rooms_apart(*moving));
+    EXPECT_FALSE(model::has_rooms_apart(*bake::bake(bake::moving_town(), options, {}))) << "no room is there";
 }
 
 TEST(ClosedRooms, AreDrawnWithTheSunFromOutsideAndBehindAWindow) {

@@ -42,12 +42,12 @@ struct EffectForest {
     std::unique_ptr<Engine> engine;
     prepare::PreparedFrame set;
 
-    explicit EffectForest(float shade_ns, float fog_ns, bool buys = true) {
+    explicit EffectForest(float shade_ns, float fog_ns, bool buys = true, model::EffectMask with_fog = effect_fog) {
         model::CostModel costs = model::default_costs();
         costs.prices = {{effect_shadow, 0, 0, shade_ns}, {effect_fog, 0, 0, fog_ns}};
         EngineOptions options;
         options.device.kind = gl::BackendKind::null;
-        options.device.switches = {effect_shadow, effect_fog};
+        options.device.switches = {effect_shadow, with_fog};
         options.buys_effects = buys;
         auto opened = Engine::open(foggy_forest(), costs, options);
         EXPECT_TRUE(opened.ok());
@@ -107,6 +107,19 @@ TEST(EngineEffects, TheOneOfTheLeastValuePerMicrosecondGoesFirst) {
     }
     EXPECT_GT(first[shade], 0) << "dear shadows go before a cheap fog";
     EXPECT_GT(first[fog], 0);
+}
+
+TEST(EngineEffects, APartThatGoesWithAnotherIsNeitherChargedNorCalledShown) {
+    EffectForest f(0.05F, 30.0F, true, effect_fog | effect_shadow);  // as shadows go with the sun
+    const double full_us = f.draw(ample_us).first;
+    bool went = false;
+    for (double budget_us = full_us; budget_us > 0.01 * full_us; budget_us *= 0.95) {
+        const auto [predicted, charged] = f.draw(budget_us);
+        EXPECT_NEAR(predicted, charged, 1e-4 * charged);
+        EXPECT_TRUE(f.sale(shade).dropped || !f.sale(fog).dropped) << "at " << budget_us;
+        went = went || f.sale(fog).dropped;
+    }
+    EXPECT_TRUE(went);
 }
 
 TEST(EngineEffects, FormsHaveTheTimeOfTheOneThatIsLeftOut) {

@@ -98,6 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongMotion{"Keys", "motions[1]", [](Model& m) { ++m.motions[1].key_count; }},
                     WrongMotion{"NoKeys", "motions[0]", [](Model& m) { m.motions[0].key_count = 0; }},
                     WrongMotion{"KeysThatWrap", "motions[0]", [](Model& m) { m.motions[0].first_key = 0xffffffffU; }},
+                    WrongMotion{"SharedKeys", "motions", [](Model& m) { m.motions.resize(40, m.motions[0]); }},
                     WrongMotion{"OuterOfItself", "motions[1]", [](Model& m) { m.motions[1].outer = 1; }},
                     WrongMotion{"OuterBehind", "motions[0]", [](Model& m) { m.motions[0].outer = 1; }},
                     WrongMotion{"Pivot", "motions[0]", [](Model& m) { m.motions[0].pivot.y = not_a_number; }},

@@ -45,6 +45,9 @@ constexpr double horizon_s(double period_s) {
     return rt::oldest_prepared(period_ns) * period_s;
 }
 
+/// How long a set is used where things move: a set may be two periods older than its frames say, without things that moved away.
+constexpr double span_s(double period_s) { return horizon_s(period_s) + 2 * period_s; }
+
 class RegionClip;
 
 /// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation. `clip`:

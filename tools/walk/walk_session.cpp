@@ -334,6 +334,7 @@ PrepareHints first_hints(const Session& s) {
     const double budget_us = s.request.in_frame_check ? std::min(asked_us, frame_share * period_us) : asked_us;
     PrepareHints hints;
     hints.planned_us.fill(budget_us / static_cast<double>(s.engine->costs().headroom));
+    hints.span_s = span_s(1e-6 * period_us);
     return hints;
 }
 

@@ -24,7 +24,6 @@ float accuracy_of(float error_rad) {
     return error_rad > model::exact_up_to_rad ? 1.0F / error_rad : std::numeric_limits<float>::infinity();
 }
 
-constexpr int skipped_periods = 2;        // that a set may be older than its frames say, without things that moved away
 constexpr double max_margin_share = 0.2;  // of the mean limit: more would only draw everything coarse
 
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
@@ -125,7 +124,7 @@ PrepareHints WalkStages::hints() const {
     if (request_.correct_costs) hints.form_ratio = forms_.ratio();
     hints.time_s = walk_time_s();
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
-    hints.span_s = horizon_s(period_s) + skipped_periods * period_s;
+    hints.span_s = span_s(period_s);
     return hints;
 }
 
