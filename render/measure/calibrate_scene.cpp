@@ -274,7 +274,9 @@ void make_price_cells(Builder& builder, const Meshes& meshes, model::Viewport vi
         if (module.priced_on == 0) continue;
         const std::vector<Index> without = builder.materials(module.priced_on),
                                  with = builder.materials(module.priced_on | module.bit);
-        for (const auto& [level, pixels] : {std::pair{many_triangles, few_pixels}, {few_triangles, many_pixels}}) {
+        for (const auto& kind : {std::pair{many_triangles, few_pixels}, {few_triangles, many_pixels}}) {
+            const auto level = kind.first;
+            const auto pixels = kind.second;
             PriceCell& cell = scene.prices.emplace_back();
             cell.effect = module.bit;
             place_items(builder, meshes[level], module.priced_on, pixels, viewport, [&](std::size_t i, Index node) {
