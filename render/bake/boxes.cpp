@@ -113,7 +113,9 @@ void PlacedBoxes::insert() {
 bool PlacedBoxes::is_best_somewhere(const Node& node, const model::CostModel& costs) const {
     const vec3 half(node.box.half());
     const float size_m = std::sqrt(2.0F * (half.x * half.y + half.y * half.z + half.z * half.x));
-    for (float size_px = model::loss_sizes_px.front(); size_px >= model::loss_sizes_px.back(); size_px *= 0.5F) {
+    // Halves are exact.
+    for (float size_px = model::loss_sizes_px.front(); size_px >= model::loss_sizes_px.back();  // NOLINT(clang-analyzer-*)
+         size_px *= 0.5F) {
         const float px_per_m = size_px / std::max(size_m, 1e-6F);
         struct Point {
             float cost, loss;

@@ -100,7 +100,7 @@ std::vector<Box> boxes_of_way(const model::Model& model, Index motion, const Box
     for (std::uint32_t first = 0; first < spans; first += each) {
         model::Model part;  // some of its keys alone
         const std::uint32_t keys = std::min(each + 1, own.key_count - first);
-        const auto from = model.motion_keys.begin() + static_cast<std::ptrdiff_t>(own.first_key + first);
+        const auto from = model.motion_keys.begin() + std::ptrdiff_t{own.first_key} + std::ptrdiff_t{first};
         part.motion_keys.assign(from, from + keys);
         part.motions.push_back(own);
         part.motions[0].first_key = 0;

@@ -122,6 +122,7 @@ void Run::slices(Calibration& out) {
 /// the fixed time of a frame holds a whole one.
 void Run::enlarging(Calibration& out) {
     std::vector<EmptyPair> pairs;
+    pairs.reserve(10 * static_cast<std::size_t>(repeats()));
     for (int i = 0; i < 10 * repeats(); ++i) pairs.push_back({timed(Pose{}, {}, 1).wall_us, timed(Pose{}, {}, 1, 0.5F).wall_us});
     const std::optional<float> ns = enlarge_ns_of(pairs, options_.device.viewport);
     out.costs.enlarge_measured = ns.has_value();

@@ -86,8 +86,9 @@ void ItemCosts::price_form(const Representation& rep, std::span<Increment> of_ef
     for (std::uint32_t i = 0; i < rep.part_count; ++i) {
         const Part& part = model_.parts[rep.first_part + i];
         const double share = measurable ? areas[i] / total : 1.0 / rep.part_count;
+        const std::uint32_t triangles = part.index_count / 3;
         price_part(model_.materials[part.material].effects, costs_.grids[grid_of_part_[rep.first_part + i]],
-                   static_cast<float>(part.index_count / 3), static_cast<float>(share), of_effects, beyond_grids);
+                   static_cast<float>(triangles), static_cast<float>(share), of_effects, beyond_grids);
     }
 }
 

@@ -87,9 +87,10 @@ MotionReach own_reach(const Model& model, const Motion& motion, const Box& box, 
     for (std::size_t k = 0; k + 1 < keys.size(); ++k) {
         const MotionKey &a = keys[k], &b = keys[k + 1];
         const double turn = turn_between(quat_of(a), quat_of(b));
-        const double steps = std::max(1.0, std::ceil(turn / chord_rad));
+        const int count = std::max(1, static_cast<int>(std::ceil(turn / chord_rad)));
+        const double steps = count;
         height_m = std::max(height_m, radius_m * (1 - std::cos(0.5 * turn / steps)));
-        for (double step = 1; step <= steps; ++step) add_pose(between_keys(motion.pivot, a, b, step / steps), box, out);
+        for (int step = 1; step <= count; ++step) add_pose(between_keys(motion.pivot, a, b, step / steps), box, out);
         const double seconds = b.time_s - a.time_s;
         if (!(seconds > 0)) continue;  // a jump
         const double travel_m = glm::length(b.translation - a.translation);

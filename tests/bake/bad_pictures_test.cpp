@@ -83,7 +83,8 @@ Samples shown_by(const model::Model& m, const model::Representation& rep, const 
     for (std::size_t i = 0; i < picture.samples.size(); ++i) {
         const FormSample& sample = picture.samples[i];
         if (!sample.covered()) continue;
-        const double column = static_cast<double>(i % picture.view.width), row = static_cast<double>(i / picture.view.width);
+        const std::size_t x = i % picture.view.width, y = i / picture.view.width;
+        const auto column = static_cast<double>(x), row = static_cast<double>(y);
         shown.push_back({picture.view.middle + dvec3(pixel_m * (static_cast<double>(picture.view.left) + column),
                                                      pixel_m * (static_cast<double>(picture.view.low) + row),
                                                      static_cast<double>(sample.depth)),

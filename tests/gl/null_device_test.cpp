@@ -166,7 +166,7 @@ TEST(NullDevice, charges_the_filter_that_is_set_from_picture_to_picture) {
     const model::CostModel costs = model::default_costs();
     gl::NullOptions null;
     null.costs = &costs;
-    const auto charged = [&](gl::DeviceOptions how, std::initializer_list<rt::TextureFilter> filters) {
+    const auto charged = [&](const gl::DeviceOptions& how, std::initializer_list<rt::TextureFilter> filters) {
         auto device = gl::open_null_device(how, null);
         EXPECT_TRUE(device.ok());
         (*device)->draws.plays();

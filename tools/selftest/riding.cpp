@@ -204,7 +204,7 @@ void visit(const Doorway& door, std::uint64_t seed, double seconds, AtDoors& fou
     dvec3 eye{random.range(-0.2, 0.2), 1.7, -2}, goal{random.range(-0.2, 0.2), 0, 2};
     double goal_since_s = 0, side_before = -1;
     bool shut_before = false, steps_back = false;
-    for (double time_s = 0; time_s < seconds; time_s += tick_s) {
+    for (double time_s = 0; time_s < seconds; time_s += tick_s) {  // NOLINT(clang-analyzer-security.FloatLoopCounter): a clock
         dvec3 way(goal.x - eye.x, 0, goal.z - eye.z);
         const bool rests = random.below(4) == 0;  // now and then it stands in the way
         if (const double length = glm::length(way); length > speed * tick_s) way *= speed * tick_s / length;
@@ -262,7 +262,7 @@ void presses(const Effort& effort, Outcome& out) {
         eye = walker.walk(eye, eye + dvec3(0, 0, 1e-9), tick_s);
         double time_s = 0;
         bool counted = false;
-        for (; time_s < 2 + takes_s; time_s += tick_s) {
+        for (; time_s < 2 + takes_s; time_s += tick_s) {  // NOLINT(clang-analyzer-security.FloatLoopCounter): a clock
             walker.set_time(time_s);
             eye = walker.walk(eye, eye, tick_s);
             const model::RigidPose pose = model::pose_at(model, 0, time_s);
@@ -274,9 +274,11 @@ void presses(const Effort& effort, Outcome& out) {
         squeezed += walker.put_aside() + walker.passed_through() > 0 ? 1 : 0;
         behind += eye.x > 3 ? 1 : 0;
         const dvec3 before = eye;
-        for (const double end_s = time_s + 1.5; time_s < end_s; time_s += tick_s) {
+        const double end_s = time_s + 1.5;
+        while (time_s < end_s) {
             walker.set_time(time_s);
             eye = walker.walk(eye, eye - dvec3(tick_s, 0, 0), tick_s);
+            time_s += tick_s;
         }
         held += eye.x > before.x - 1 ? 1 : 0;
     }

@@ -23,7 +23,7 @@ namespace surefoot::walk {
 constexpr double after_recording_s = 1.0;
 
 /// The input of one walk. The session's main thread calls all members, except those of poses() and jump_poses().
-class InputSession {
+class InputSession {  // NOLINT(clang-analyzer-optin.performance.Padding): members stand by what they are for
 public:
     /// Reads the steering file, then the recording; without a recording, starts to look for devices. Errors name file and line.
     /// Adds warnings for the user to `notes`.

@@ -39,7 +39,7 @@ inline constexpr std::array barriers = {
 ///
 /// The body is a capsule from step_m above the feet to crown_m above the eye: what is lower is stepped on. The feet stand on the
 /// highest floor under a disc of half the radius. The same calls give the same bits.
-class Walker {
+class Walker {  // NOLINT(clang-analyzer-optin.performance.Padding): members stand by what they are for
 public:
     /// The ground must outlive this, and be valid and indexed.
     Walker(const Ground& ground, const Body& body) : Walker(ground, nullptr, body) {}
