@@ -132,7 +132,7 @@ function promise_rows(promise,    scenes, count, i, j, n, m, used, list, more, c
   }
 }
 
-# Promises that tests check anyway may stand in history.csv alone: the page has few lines.
+# Promises that hold may stand in history.csv alone: the page has few lines. A miss is listed all the same.
 function on_page(promise) { return bound_of[promise] != "-" && group_of[promise] != "History only" }
 
 # Figures that miss their target, those with the same reason together.
