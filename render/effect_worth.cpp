@@ -95,7 +95,7 @@ float loss_of(const WorthPoint& point, model::EffectMask own, const model::Dayli
         return glm::clamp(point.colour * effects::light_of(point.at, mask, light), 0.0F, 1.0F);
     };
     const vec3 with = shown(point.effects);
-    return (own & model::effect_fog) != 0 ? mean_square(with - fog) : mean_square(with - shown(point.effects & ~own));
+    return effects::hides_by_depth(own) ? mean_square(with - fog) : mean_square(with - shown(point.effects & ~own));
 }
 
 float loss_of_leaf(std::span<const WorthPoint> points, model::EffectMask own, const model::Daylight& light, const vec3& fog) {
@@ -206,7 +206,7 @@ std::array<prepare::EffectLoss, prepare::max_effect_groups> EffectWorth::at(floa
         return std::span(losses_).subspan((light * groups_.size() + group) * nodes_, nodes_);
     };
     for (std::size_t g = 0; g < groups_.size(); ++g)
-        out[g] = {of(before, g), of(after, g), between, (groups_[g].own & model::effect_fog) != 0, fog_density_};
+        out[g] = {of(before, g), of(after, g), between, effects::hides_by_depth(groups_[g].own), fog_density_};
     return out;
 }
 

@@ -65,6 +65,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->plan.reserve(candidates);
     impl->unprepared.reserve(impl->model);
     impl->moving = model::MovingNodes(impl->model);
+    impl->restless = restless_nodes(impl->model, impl->moving);
     const std::size_t max_drawn = std::max<std::size_t>(candidates * 2, impl->unprepared.capacity());
     impl->drawn.reserve(max_drawn);
     impl->culled.reserve(candidates);
@@ -305,7 +306,7 @@ void Engine::set_light(const model::Daylight& light, float hour) {
 void Engine::set_time(double time_s) {
     Impl& e = *impl_;
     e.draws.plays();
-    if (!e.moving.any()) return;
+    if (e.restless.empty()) return;
     e.device->draws.plays();
     e.moving.set_span(time_s, time_s);
     e.device->set_time(time_s);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/effects/effects.hpp"
 #include "render/engine_impl.hpp"
 
 namespace surefoot {
@@ -20,6 +21,17 @@ void EffectDwell::answer(bool bought) {
         left_ = wait_ = too_short ? std::min(2 * wait_, max_wait) : min_wait;
     kept_ = 0;
     away_ = true;
+}
+
+std::vector<model::Index> restless_nodes(const model::Model& model, const model::MovingNodes& moving) {
+    std::vector<model::Index> nodes = moving.any() ? moving.roots() : std::vector<model::Index>{};
+    const model::EffectMask moves = effects::moving_effects();
+    if ((model.called_for() & moves) == 0) return nodes;
+    for (model::Index n = 0; n < model.nodes.size(); ++n) {
+        const model::Node& node = model.nodes[n];
+        if (node.child_count == 0 && (model.reps[node.first_rep + node.rep_count - 1].effects & moves) != 0) nodes.push_back(n);
+    }
+    return nodes;
 }
 
 void Engine::Impl::reserve_effects() {

@@ -61,6 +61,7 @@ struct Engine::Impl {
     float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from
 
     model::MovingNodes moving GUARDED_BY(draws);  ///< at the time of the next picture
+    std::vector<model::Index> restless;           ///< nodes whose pictures change with the time; not those below them
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
@@ -139,5 +140,8 @@ struct Engine::Impl {
     [[nodiscard]] bool in_view(model::Index node) const REQUIRES(draws);
     [[nodiscard]] bool motion_in_view(const Pose& pose) const REQUIRES(draws);
 };
+
+/// What moves, and leaves whose full detail has an effect that does.
+std::vector<model::Index> restless_nodes(const model::Model& model, const model::MovingNodes& moving);
 
 }  // namespace surefoot

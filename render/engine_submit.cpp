@@ -37,12 +37,12 @@ bool Engine::Impl::in_view(model::Index node) const {
 
 /// Whether anything moves, now or later, that the pose may see.
 bool Engine::Impl::motion_in_view(const Pose& pose) const {
-    if (!moving.any()) return false;
+    if (restless.empty()) return false;
     // A moved sample sees a pixel more.
     const double pixel_rad = model::pixel_angle(pose, options.device.viewport);
     const model::Frustum wide =
         model::make_frustum(pose, options.device.viewport, model::far_corners_m(model.nodes[0].box), 0, 2 * pixel_rad);
-    return std::any_of(moving.roots().begin(), moving.roots().end(),
+    return std::any_of(restless.begin(), restless.end(),
                        [&](model::Index node) { return model::visible(wide, model.nodes[node].box); });
 }
 

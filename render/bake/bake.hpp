@@ -25,6 +25,7 @@ struct BakeOptions {
     double frame_us = 33333;            ///< the frame of the 1/16 rule, at 30 Hz
     std::optional<model::SunTime> sun;  ///< the caller sees that it is above the horizon; none: the scene's, else a fixed one
     std::optional<double> fog_visibility_m;        ///< in metres, 0: no fog; none: the scene's
+    bool water_by_name = false;                    ///< as is_named_water() says, where a file says nothing
     const model::CostModel* costs = nullptr;       ///< calibrated; null: default_costs()
     model::Counts max_counts = model::max_counts;  ///< limits of the model; tests lower them
 };

@@ -1,6 +1,8 @@
 // A ray to the sun for each of its moments, and one to each lamp that reaches a vertex.
 #include "render/bake/baked_light.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -283,6 +285,18 @@ BakedLight measure_baked_light(model::Model& model, const LightInput& input, con
         maker.add_glow(r);
     });
     return maker.finish();
+}
+
+void add_to_findings(const BakedLight& baked, const model::LightFacts& facts, std::vector<model::EffectFinding>& findings) {
+    for (model::EffectFinding& f : findings) {
+        if (!f.called_for) continue;
+        if (f.bit == model::effect_shadow)
+            f.reason += fmt::format("; {} of {} vertices in the sun lie in shadow at some hour", baked.in_shadow, baked.vertices);
+        else if (f.bit == model::effect_lamps)
+            f.reason += fmt::format("; {} vertices are lit or glow", baked.lit);
+        else if (f.bit == model::effect_fog)
+            f.reason += fmt::format("; one sees {:.4g} m far", facts.fog_visibility_m);
+    }
 }
 
 }  // namespace surefoot::bake

@@ -33,5 +33,7 @@ struct LightInput {
 BakedLight measure_baked_light(model::Model& model, const LightInput& input, const ForAll& for_all,
                                const std::function<bool()>& step);
 std::size_t baked_light_steps(const model::Model& model);
+/// Adds what was measured to the findings of shadows and lamps, and how far the fog lets see.
+void add_to_findings(const BakedLight& baked, const model::LightFacts& facts, std::vector<model::EffectFinding>& findings);
 
 }  // namespace surefoot::bake

@@ -7,6 +7,7 @@
 #include "render/bake/alpha_bleed.hpp"
 #include "render/bake/materials.hpp"
 #include "render/bake/objects.hpp"
+#include "render/effects/effects.hpp"
 
 namespace surefoot::bake {
 
@@ -91,8 +92,11 @@ model::Index add_box_material(const BoxForm& form, model::Model& model) {
     m.alpha = model::AlphaMode::mask;
     m.two_sided = true;  // the far half shows through this one's holes
     m.alpha_cutoff = shown_alpha;
-    m.effects = model::effect_texture | model::effect_alpha_mask;
-    if (model.light.fog_visibility_m > 0) m.effects |= model::effect_fog;
+    effects::MaterialFacts facts;
+    facts.image = true;
+    facts.in_fog = model.light.fog_visibility_m > 0;
+    facts.alpha = m.alpha;
+    m.effects = effects::called_for_by(facts);
     model.materials.push_back(m);
     return static_cast<model::Index>(model.materials.size() - 1);
 }

@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
 
 #include "render/bake/alpha_bleed.hpp"
 #include "render/bake/mask_coverage.hpp"
+#include "render/effects/effects.hpp"
 
 namespace surefoot::bake {
 
@@ -178,8 +180,44 @@ std::vector<bool> cut_out_materials(const importer::Scene& scene) {
     return out;
 }
 
-model::Index add_materials(const importer::Scene& scene, model::Model& model) {
+namespace {
+
+/// By material of the scene: whether some vertex has a colour that is not white.
+std::vector<bool> coloured_materials(const importer::Scene& scene) {
+    std::vector<bool> out(scene.materials.size(), false);
+    const auto mark = [&](const importer::Mesh& mesh) {
+        for (const importer::Primitive& p : mesh.primitives) {
+            const bool coloured = std::any_of(p.colours.begin(), p.colours.end(), [](const auto& c) {
+                return c[0] != 255 || c[1] != 255 || c[2] != 255 || c[3] != 255;
+            });
+            if (coloured) out[p.material] = true;
+        }
+    };
+    for (const importer::Mesh& mesh : scene.meshes) mark(mesh);
+    for (const importer::StandIn& stand_in : scene.stand_ins) mark(stand_in.mesh);
+    return out;
+}
+
+}  // namespace
+
+bool is_named_water(std::string_view name) {
+    for (const std::string_view ending : {".png", ".jpg", ".jpeg", ".tga", ".dds", ".bmp"})
+        if (name.ends_with(ending)) name.remove_suffix(ending.size());
+    const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+    while (!name.empty() && !is_letter(name.back())) name.remove_suffix(1);  // a number, and what stands before it
+    constexpr std::string_view word = "water";
+    if (name.size() < word.size()) return false;
+    const std::string_view last = name.substr(name.size() - word.size());
+    const bool same =
+        std::ranges::equal(last, word, [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+    if (!same || last.size() == name.size()) return same;
+    const char before = name[name.size() - word.size() - 1];
+    return !is_letter(before) || (last.front() == 'W' && std::islower(static_cast<unsigned char>(before)) != 0);
+}
+
+model::Index add_materials(const importer::Scene& scene, model::Model& model, bool water_by_name) {
     const std::vector<model::Index> textures = add_images(scene, model);
+    const std::vector<bool> coloured = coloured_materials(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const importer::Material& from = scene.materials[i];
         model::Material to;
@@ -188,18 +226,23 @@ model::Index add_materials(const importer::Scene& scene, model::Model& model) {
         to.alpha = from.alpha;
         to.alpha_cutoff = from.alpha_cutoff;
         to.two_sided = from.two_sided;
-        if (from.image != importer::none) to.effects |= model::effect_texture;
-        if (from.alpha == model::AlphaMode::mask) to.effects |= model::effect_alpha_mask;
-        if (from.alpha == model::AlphaMode::blend) to.effects |= model::effect_blend;
-        if (!from.unlit) to.effects |= model::effect_sun;
+        effects::MaterialFacts facts;
+        facts.image = from.image != importer::none;
+        facts.vertex_colours = coloured[i];
+        facts.lit = !from.unlit;
+        facts.in_fog = model.light.fog_visibility_m > 0;
+        facts.water = from.water.value_or(water_by_name && is_named_water(from.name));
+        facts.alpha = from.alpha;
+        to.effects = effects::called_for_by(facts);
         model.materials.push_back(to);
     }
     model::Material proxy;
     proxy.two_sided = true;  // a simplified crowd has no inside to hide
-    proxy.effects = model::effect_vertex_colour;
-    const bool lit =
-        std::any_of(scene.materials.begin(), scene.materials.end(), [](const importer::Material& m) { return !m.unlit; });
-    if (lit) proxy.effects |= model::effect_sun;
+    effects::MaterialFacts facts;
+    facts.vertex_colours = true;
+    facts.lit = std::any_of(scene.materials.begin(), scene.materials.end(), [](const importer::Material& m) { return !m.unlit; });
+    facts.in_fog = model.light.fog_visibility_m > 0;
+    proxy.effects = effects::called_for_by(facts);
     model.materials.push_back(proxy);
     return static_cast<model::Index>(model.materials.size() - 1);
 }
@@ -211,19 +254,6 @@ std::vector<Picture> pictures_of(const model::Model& model) {
         out.push_back(none ? Picture::none : model.textures[material.texture].clamp ? Picture::clamped : Picture::repeats);
     }
     return out;
-}
-
-void mark_vertex_colours(const importer::Scene& scene, model::Model& model) {
-    const auto mark = [&](const importer::Mesh& mesh) {
-        for (const importer::Primitive& p : mesh.primitives) {
-            const bool coloured = std::any_of(p.colours.begin(), p.colours.end(), [](const auto& c) {
-                return c[0] != 255 || c[1] != 255 || c[2] != 255 || c[3] != 255;
-            });
-            if (coloured) model.materials[p.material].effects |= model::effect_vertex_colour;
-        }
-    };
-    for (const importer::Mesh& mesh : scene.meshes) mark(mesh);
-    for (const importer::StandIn& stand_in : scene.stand_ins) mark(stand_in.mesh);
 }
 
 std::array<std::uint8_t, 4> tinted(const model::Material& material, const model::Vertex& vertex, const vec3& picture) {
@@ -281,69 +311,19 @@ std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model:
                   {std::to_integer<int>(texel[0]), std::to_integer<int>(texel[1]), std::to_integer<int>(texel[2])});
 }
 
-namespace {
-
-/// What was measured of light changes two findings.
-void add_openness(const Openness& openness, std::vector<model::EffectFinding>& findings) {
-    if (!openness.measured) return;
-    for (model::EffectFinding& f : findings) {
-        if (f.bit == model::effect_openness) {
-            f.called_for = true;
-            f.triangles = openness.triangles;
-            f.reason = fmt::format("what {} lit vertices see of sky and room was measured", openness.vertices);
-        } else if (f.bit == model::effect_sun) {
-            f.triangles = openness.triangles - openness.closed;
-            if (openness.closed == openness.triangles)
-                f.reason = fmt::format("none of {} lit triangles sees any sky{}", openness.triangles,
-                                       f.called_for ? "; baked forms of several objects do" : "");
-            else if (openness.closed > 0)
-                f.reason += fmt::format("; {} of {} lit triangles see no sky and are drawn without it", openness.closed,
-                                        openness.triangles);
-        }
-    }
-}
-
-/// What was measured of shadows and lamps, and how far the fog lets see.
-void add_baked_light(const model::Model& model, const BakedLight& baked, std::vector<model::EffectFinding>& findings) {
-    for (model::EffectFinding& f : findings) {
-        if (!f.called_for) continue;
-        if (f.bit == model::effect_shadow)
-            f.reason += fmt::format("; {} of {} vertices in the sun lie in shadow at some hour", baked.in_shadow, baked.vertices);
-        else if (f.bit == model::effect_lamps)
-            f.reason += fmt::format("; {} vertices are lit or glow", baked.lit);
-        else if (f.bit == model::effect_fog)
-            f.reason += fmt::format("; one sees {:.4g} m far", model.light.fog_visibility_m);
-    }
-}
-
-}  // namespace
-
 std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
                                                const SceneLight& light) {
-    constexpr std::array<const char*, model::effect_count> absent = {
-        "no material has an image",
-        "all vertex colours are white or absent",
-        "every material is unlit",
-        "no material has alpha mode MASK",
-        "no material has alpha mode BLEND",
-        "not measured: the bake is of quality draft, or nothing lit is hidden from the sky",
-        "not measured: the bake is of quality draft, or nothing stands between sun and scene",
-        "no lamp and nothing that glows, or the bake is of quality draft",
-        "the scene names no fog"};
-    constexpr std::array<const char*, model::effect_count> what = {"have an image",        "have vertex colours", "are lit",
-                                                                   "are cut out by alpha", "are transparent",     "are shaded",
-                                                                   "lie in shadow",        "are lit by lamps",    "lie in fog"};
-    std::vector<model::EffectMask> effects;
-    for (const model::Material& material : model.materials) effects.push_back(material.effects);
+    std::vector<model::EffectMask> masks;
+    for (const model::Material& material : model.materials) masks.push_back(material.effects);
     for (const auto& [copy, original] : light.openness.copies)  // its triangles are the original's
-        if (copy < effects.size() && original < effects.size()) effects[original] |= effects[copy];
+        if (copy < masks.size() && original < masks.size()) masks[original] |= masks[copy];
     std::vector<model::EffectFinding> findings;
-    for (std::size_t e = 0; e < model::effect_count; ++e) {
+    for (const effects::EffectModule& module : effects::all_effects()) {
         model::EffectFinding f;
-        f.bit = 1U << e;
+        f.bit = module.bit;
         std::size_t materials = 0;
         for (std::size_t m = 0; m < triangles_of_material.size(); ++m) {
-            if ((effects[m] & f.bit) == 0 || triangles_of_material[m] == 0) continue;
+            if ((masks[m] & f.bit) == 0 || triangles_of_material[m] == 0) continue;
             ++materials;
             f.triangles += triangles_of_material[m];
         }
@@ -351,13 +331,13 @@ std::vector<model::EffectFinding> find_effects(const model::Model& model, const 
         std::uint64_t own = 0;
         for (const model::Representation& rep : model.reps) own += (rep.effects & f.bit) != 0 ? 1 : 0;
         f.called_for = materials > 0 || own > 0;
-        f.reason = materials > 0 ? fmt::format("{} of {} materials {}", materials, triangles_of_material.size(), what[e])
-                   : own > 0     ? fmt::format("{}; {} baked representations need it", absent[e], own)
-                                 : absent[e];
+        f.reason = materials > 0 ? fmt::format("{} of {} materials {}", materials, triangles_of_material.size(), module.have)
+                   : own > 0     ? fmt::format("{}; {} baked representations need it", module.missing, own)
+                                 : std::string(module.missing);
         findings.push_back(std::move(f));
     }
-    add_openness(light.openness, findings);
-    add_baked_light(model, light.baked, findings);
+    add_to_findings(light.openness, findings);
+    add_to_findings(light.baked, model.light, findings);
     return findings;
 }
 

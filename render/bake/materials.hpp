@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "render/bake/geometry.hpp"
@@ -15,13 +16,13 @@
 
 namespace surefoot::bake {
 
-/// Fills model.materials and model.textures, with mip levels and alpha bleeding. Sets the effects of each material, sun included;
-/// mark_vertex_colours() adds vertex colours. Appends the proxy material (vertex colours and sun) and returns its index.
-model::Index add_materials(const importer::Scene& scene, model::Model& model);
+/// Fills model.materials and model.textures, with mip levels and alpha bleeding. Each material has the effects that it calls for
+/// by itself; the model has its fog already. Appends the proxy material (vertex colours and sun) and returns its index.
+model::Index add_materials(const importer::Scene& scene, model::Model& model, bool water_by_name = false);
+/// Whether the last word of a material's name is "water": "Pond_water.001", "oceanicWater.png", and not "waterfall".
+bool is_named_water(std::string_view name);
 /// By material of the scene: whether its alpha test drops at least one texel, and so cuts shapes out of triangles.
 std::vector<bool> cut_out_materials(const importer::Scene& scene);
-/// Sets the vertex colour effect of materials whose primitives have colours other than white.
-void mark_vertex_colours(const importer::Scene& scene, model::Model& model);
 /// By material of the model: whether it has a texture, and how that wraps.
 std::vector<Picture> pictures_of(const model::Model& model);
 

@@ -1,6 +1,8 @@
 // Rays from each vertex, then bytes, then materials without the sun.
 #include "render/bake/openness.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <map>
@@ -189,6 +191,25 @@ Openness measure_openness(model::Model& model, const RayTree& opaque, const Clos
     found.measured = true;
     maker.change_materials(found);
     return found;
+}
+
+void add_to_findings(const Openness& openness, std::vector<model::EffectFinding>& findings) {
+    if (!openness.measured) return;
+    for (model::EffectFinding& f : findings) {
+        if (f.bit == model::effect_openness) {
+            f.called_for = true;
+            f.triangles = openness.triangles;
+            f.reason = fmt::format("what {} lit vertices see of sky and room was measured", openness.vertices);
+        } else if (f.bit == model::effect_sun) {
+            f.triangles = openness.triangles - openness.closed;
+            if (openness.closed == openness.triangles)
+                f.reason = fmt::format("none of {} lit triangles sees any sky{}", openness.triangles,
+                                       f.called_for ? "; baked forms of several objects do" : "");
+            else if (openness.closed > 0)
+                f.reason += fmt::format("; {} of {} lit triangles see no sky and are drawn without it", openness.closed,
+                                        openness.triangles);
+        }
+    }
 }
 
 }  // namespace surefoot::bake

@@ -34,6 +34,8 @@ using ClosedVertices = std::vector<std::uint32_t>;
 /// only Vertex::hidden has changed. The same bytes at any number of threads.
 Openness measure_openness(model::Model& model, const RayTree& opaque, const ClosedVertices& closed, const ForAll& for_all,
                           const std::function<bool()>& step);
+/// Adds what was measured to the findings of openness and sun.
+void add_to_findings(const Openness& openness, std::vector<model::EffectFinding>& findings);
 /// How often it calls `step`.
 std::size_t openness_steps(const model::Model& model);
 

@@ -95,8 +95,6 @@ void set_own_light(const importer::Scene& scene, const std::optional<model::SunT
         model.light = {time->day, time->latitude_deg};
     }
     model.light.fog_visibility_m = static_cast<float>(fog_visibility_m);
-    if (model.light.fog_visibility_m > 0)
-        for (model::Material& material : model.materials) material.effects |= model::effect_fog;
 }
 
 void fill_scene_light(model::Model& model) {

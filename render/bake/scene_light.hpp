@@ -23,7 +23,7 @@ struct SceneLight {
     BakedLight baked;
 };
 
-/// The model's own sun, by the time or the scene, and its fog. Materials are there already.
+/// The model's own sun, by the time or the scene, and its fog.
 void set_own_light(const importer::Scene& scene, const std::optional<model::SunTime>& time, double fog_visibility_m,
                    model::Model& model);
 

@@ -3,12 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace surefoot::draw {
 
 namespace {
 
 std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F))); }
+
+vec3 centre_of(const model::Model& model, const model::Part& part) {
+    vec3 low(std::numeric_limits<float>::max()), high(-low);
+    for (std::uint32_t i = part.first_index; i < part.first_index + part.index_count; ++i) {
+        const float* const at = model.vertices[part.first_vertex + model.indices[i]].position;
+        low = glm::min(low, vec3(at[0], at[1], at[2]));
+        high = glm::max(high, vec3(at[0], at[1], at[2]));
+    }
+    return part.index_count > 0 ? 0.5F * low + 0.5F * high : vec3(0);
+}
 
 DrawPart make_part(const model::Model& model, const model::Part& part, const std::vector<model::EffectMask>& masks,
                    const TextureLayout& textures) {
@@ -29,6 +40,7 @@ DrawPart make_part(const model::Model& model, const model::Part& part, const std
     out.program = static_cast<std::uint16_t>(found - masks.begin());
     out.two_sided = material.two_sided;
     out.blended = (material.effects & model::effect_blend) != 0;
+    if (out.blended) out.centre = centre_of(model, part);
     return out;
 }
 
@@ -72,6 +84,16 @@ DrawTables make_tables(const model::Model& model) {
         tables.centres.emplace_back(vec3(centre), 0.0F);
     }
     return tables;
+}
+
+float distance_m(const DrawPart& part, const Placed& placed, const dvec3& eye) {
+    std::array<float, 12> rows{};
+    eye_relative_rows(placed, eye, rows);
+    const auto along = [&](std::size_t row) {
+        return rows[4 * row] * part.centre.x + rows[4 * row + 1] * part.centre.y + rows[4 * row + 2] * part.centre.z +
+               rows[4 * row + 3];
+    };
+    return glm::length(vec3(along(0), along(1), along(2)));
 }
 
 Placed moved(const Placed& placed, const model::RigidPose& pose) {

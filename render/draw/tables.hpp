@@ -21,6 +21,7 @@ struct DrawPart {
     std::array<std::uint8_t, 4> colour;
     float alpha_cutoff;
     float texture_layer;
+    vec3 centre;            ///< of a blended one's box, in the mesh's frame; for sorting only
     std::uint16_t program;  ///< in the list of masks
     bool two_sided, blended;
     bool captured;  ///< a picture that holds the light of the bake
@@ -60,6 +61,9 @@ Placed moved(const Placed& placed, const model::RigidPose& pose);
 
 /// The eye-relative rows of a placement. The origin is made relative in double: floats lose millimetres far from 0.
 void eye_relative_rows(const Placed& placed, const dvec3& eye, std::array<float, 12>& rows);
+
+/// From the eye to the centre of a blended part, m.
+float distance_m(const DrawPart& part, const Placed& placed, const dvec3& eye);
 
 inline Culling culling(const DrawPart& part, const Placed& placed) {
     if (part.two_sided) return Culling::none;

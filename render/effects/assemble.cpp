@@ -9,9 +9,6 @@ namespace surefoot::effects {
 
 namespace {
 
-constexpr model::EffectMask varying_colour =
-    model::effect_vertex_colour | model::effect_sun | model::effect_openness | model::effect_lamps;
-
 // Of programs with light. Normals go by the cofactor matrix, which serves non-uniform scales; its sign is the determinant's, so a
 // mirrored placement turns it back. Normals of two-sided materials turn towards the eye.
 constexpr std::string_view normal_declarations = "in vec3 normal;\nin float two_sided;\n";
@@ -29,9 +26,11 @@ constexpr std::string_view light_code = "    v_colour.rgb *= lit;\n";
 }  // namespace
 
 std::span<const EffectModule> all_effects() {
-    static const std::array<EffectModule, model::effect_count> modules{texture_module,    vertex_colour_module, sun_module,
-                                                                       alpha_mask_module, blend_module,         openness_module,
-                                                                       shadow_module,     lamps_module,         fog_module};
+    static const std::vector<EffectModule> modules = [] {
+        std::vector<EffectModule> all;
+        for (const EffectModule* const module : registry) all.push_back(*module);
+        return all;
+    }();
     return modules;
 }
 
@@ -67,6 +66,24 @@ vec3 light_of(const SurfacePoint& point, model::EffectMask mask, const model::Da
     return out.lit;
 }
 
+model::EffectMask called_for_by(const MaterialFacts& material) {
+    model::EffectMask mask = 0;
+    for (const EffectModule& module : all_effects())
+        if (module.called_for != nullptr && module.called_for(material)) mask |= module.bit;
+    return mask;
+}
+
+model::EffectMask moving_effects() {
+    model::EffectMask mask = 0;
+    for (const EffectModule& module : all_effects())
+        if (module.moves) mask |= module.bit;
+    return mask;
+}
+
+bool hides_by_depth(model::EffectMask mask) {
+    return std::ranges::any_of(all_effects(), [&](const EffectModule& m) { return m.hides_by_depth && (mask & m.bit) != 0; });
+}
+
 std::string effects_text(model::EffectMask mask, std::string_view between) {
     std::string text;
     for (const EffectModule& module : all_effects()) {
@@ -83,7 +100,8 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
     std::string fragment_declarations;
     std::string fragment_code;
     std::string fragment_code_samples;
-    bool covers = false, has_light = false;
+    std::vector<gl::UniformSource> uniforms;
+    bool covers = false, has_light = false, varies = false;
     for (const EffectModule* const one : modules_of(mask)) {
         const EffectModule& module = *one;
         if (module.is_light && !has_light) {
@@ -98,12 +116,15 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
         const bool other = !module.fragment_code_samples.empty() && (mask & model::effect_blend) == 0;
         fragment_code_samples += other ? module.fragment_code_samples : module.fragment_code;
         covers = covers || other;
+        varies = varies || module.varies_colour;
+        uniforms.insert(uniforms.end(), module.uniforms.begin(), module.uniforms.end());
     }
     if (has_light) vertex_code += light_code;
     // A colour that no effect varies over the triangle needs no interpolation.
-    const std::string flat = (mask & varying_colour) == 0 ? "flat " : "";
+    const std::string flat = varies ? "" : "flat ";
     gl::ProgramSource source;
     source.name = effects_text(mask);
+    source.uniforms = std::move(uniforms);
     source.vertex =
         "#version 430 core\n"
         "in vec3 position;\n"

@@ -8,10 +8,11 @@ constexpr EffectModule blend{
     .name = "blend",
     .help = "transparent surfaces, drawn last, back to front",
     .requested_by = "a material whose alpha mode is blend",
-    .vertex_declarations = "",
-    .vertex_code = "",
-    .fragment_declarations = "",
+    .have = "are transparent",
+    .missing = "no material has alpha mode BLEND",
+    .called_for = [](const MaterialFacts& material) { return material.alpha == model::AlphaMode::blend; },
     .fragment_code = "    opacity = colour.a;\n",
+    .not_everywhere = "what is blended is drawn last and hides nothing behind it",
 };
 const EffectModule blend_module = blend;
 

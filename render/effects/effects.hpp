@@ -16,28 +16,62 @@ namespace surefoot::effects {
 struct SurfacePoint;
 struct SurfaceLight;
 
-/// One effect: what asks for it, and its GLSL pieces for the named slots of the bare program.
+/// What a material, and the scene around it, call for effects by.
+struct MaterialFacts {
+    bool image = false, vertex_colours = false, lit = false;
+    bool in_fog = false, water = false;
+    model::AlphaMode alpha = model::AlphaMode::opaque;
+};
+
+/// The effects of a material, and what all vertices that it is drawn with hold.
+struct MaterialUse {
+    model::EffectMask effects = 0;
+    bool white = true;   ///< a colour that changes nothing
+    bool open = true;    ///< nothing is hidden from them
+    bool no_sky = true;  ///< openness leaves nothing of the sun
+};
+
+/// One effect: what calls for it, its GLSL pieces for the named slots of the bare program, its price and its worth.
 struct EffectModule {
     model::Effect bit;
-    std::string_view name, help;                            ///< help: one line for people
-    std::string_view requested_by;                          ///< what in a scene asks for it
-    std::string_view vertex_declarations, vertex_code;      ///< may read `world_rows`, write `v_colour`
-    std::string_view fragment_declarations, fragment_code;  ///< may change `colour`, discard
+    std::string_view name, help;     ///< help: one line for people
+    std::string_view requested_by;   ///< what in a scene asks for it
+    std::string_view have, missing;  ///< of a finding: "3 of 5 materials `have`", or why it is not called for
+    /// Whether a material calls for it. Null: a step of the bake measures it and gives it to materials.
+    bool (*called_for)(const MaterialFacts& material) = nullptr;
+
+    std::string_view vertex_declarations = {}, vertex_code = {};      ///< may read `world_rows`, write `v_colour`
+    std::string_view fragment_declarations = {}, fragment_code = {};  ///< may change `colour`, discard
     /// In place of fragment_code where pixels have several samples; sets `opacity` to the covered share. Empty: fragment_code.
     std::string_view fragment_code_samples = {};
+    std::span<const gl::UniformSource> uniforms = {};  ///< that its pieces declare
+    bool varies_colour = false;                        ///< vertices of a triangle may have different colours by it
     /// vertex_code may read the normal `n` and whether it was `turned` to the eye; write `lit`, and of it the share `by_sun`.
     bool is_light = false;
     int order = 0;  ///< of application; effects of the same order go by bit
-    /// Of a module with light: what vertex_code does, on the processor. The difference that it makes is the effect's worth.
-    void (*light)(const SurfacePoint& point, const model::Daylight& of_moment, SurfaceLight& out) = nullptr;
+
     /// Its cost adds to that of a state class, and calibration measures it on this one. 0: grids of state classes hold its cost.
     model::EffectMask priced_on = 0;
     /// Until it is measured: as on llvmpipe with two cores. `effect` is `bit` or, without a price, 0.
     model::EffectPrice usual_price = {};
+    /// Of a module with light: what vertex_code does, on the processor. The difference that it makes is the effect's worth.
+    void (*light)(const SurfacePoint& point, const model::Daylight& of_moment, SurfaceLight& out) = nullptr;
+    bool moves = false;           ///< its picture changes with the time
+    bool hides_by_depth = false;  ///< its worth: what is far shows the colour behind everything instead of its own
+
+    /// Whether such a material may have it too, with the same picture. Null: no material may.
+    bool (*changes_nothing)(const MaterialUse& material) = nullptr;
+    std::string_view not_everywhere = {};  ///< why some may not
 };
 
-/// In bit order. To add one: its bit, a file in this folder, and its line in modules.hpp and assemble.cpp.
+/// In bit order. To add one: a file in this folder, its bit (model/effects.hpp), and its line in modules.hpp.
 std::span<const EffectModule> all_effects();
+/// What a material calls for by itself.
+model::EffectMask called_for_by(const MaterialFacts& material);
+/// The effects whose pictures change with the time.
+model::EffectMask moving_effects();
+/// Whether any effect of the mask hides by depth.
+bool hides_by_depth(model::EffectMask mask);
 /// The usual prices of those that have one, in bit order.
 std::vector<model::EffectPrice> usual_prices();
 /// "texture sun", or "bare".

@@ -10,6 +10,10 @@ void light_by_lamps(const SurfacePoint& point, const model::Daylight& of_moment,
     out.lit += of_moment.lamp_strength * point.by_lamps * point.by_lamps;
 }
 
+constexpr std::array<gl::UniformSource, 1> lamp_uniforms{{
+    {"lamp_strength", 1, [](const gl::PictureMoment& moment, float* to) { *to = moment.light.lamp_strength; }},
+}};
+
 }  // namespace
 
 constexpr EffectModule lamps{
@@ -17,17 +21,22 @@ constexpr EffectModule lamps{
     .name = "baked_lamps",
     .help = "light of lamps and of what glows, baked at the vertices",
     .requested_by = "a lamp (KHR_lights_punctual) or an emissive material, in a bake of quality full",
+    .have = "are lit by lamps",
+    .missing = "no lamp and nothing that glows, or the bake is of quality draft",
     .vertex_declarations = "in vec3 lamps_before;\nin vec3 lamps_behind;\nuniform float lamp_strength;\n",
     .vertex_code =
         "    vec3 by_lamps = turned ? lamps_behind : lamps_before;\n"
         "    lit += lamp_strength * by_lamps * by_lamps;\n",
-    .fragment_declarations = "",
-    .fragment_code = "",
+    .uniforms = lamp_uniforms,
+    .varies_colour = true,
     .is_light = true,
     .order = 5,
-    .light = light_by_lamps,
     .priced_on = model::effect_texture | model::effect_sun,
     .usual_price = {model::effect_lamps, 2.2F, 0.7F, 0},
+    .light = light_by_lamps,
+    .changes_nothing =  // no lamp reaches its vertices
+    [](const MaterialUse& material) { return (material.effects & (model::effect_sun | model::effect_openness)) != 0; },
+    .not_everywhere = "light would change materials without it",
 };
 const EffectModule lamps_module = lamps;
 

@@ -1,5 +1,7 @@
-// The effects' modules, one file each; listed by all_effects().
+// The registry of effects: their modules, one file each, in bit order.
 #pragma once
+
+#include <array>
 
 #include "render/effects/effects.hpp"
 
@@ -14,5 +16,15 @@ extern const EffectModule openness_module;
 extern const EffectModule shadow_module;
 extern const EffectModule lamps_module;
 extern const EffectModule fog_module;
+extern const EffectModule water_module;
+
+inline constexpr std::array<const EffectModule*, model::effect_count> registry{
+    &texture_module,  &vertex_colour_module, &sun_module,   &alpha_mask_module, &blend_module,
+    &openness_module, &shadow_module,        &lamps_module, &fog_module, &water_module};
+
+/// Writes a uniform of type vec3.
+constexpr void put(const vec3& value, float* to) {
+    for (int i = 0; i < 3; ++i) to[i] = value[i];
+}
 
 }  // namespace surefoot::effects

@@ -15,6 +15,10 @@ void light_by_openness(const SurfacePoint& point, const model::Daylight& of_mome
     out.lit = glm::mix(room, out.lit, std::min(1.0F, 4.0F * point.sees_sky)) * (0.6F + 0.4F * point.sees_room);
 }
 
+constexpr std::array<gl::UniformSource, 1> room_uniforms{{
+    {"room_light", 1, [](const gl::PictureMoment& moment, float* to) { *to = moment.light.room_light; }},
+}};
+
 }  // namespace
 
 constexpr EffectModule openness{
@@ -22,18 +26,22 @@ constexpr EffectModule openness{
     .name = "openness",
     .help = "no sun where no sky is seen, and shade in corners, baked at the vertices",
     .requested_by = "a lit mesh that something hides from the sky, in a bake of quality full",
+    .have = "are shaded",
+    .missing = "not measured: the bake is of quality draft, or nothing lit is hidden from the sky",
     .vertex_declarations = "in vec4 hidden;\nuniform float room_light;\n",
     .vertex_code =
         "    vec2 seen = 1.0 - (turned ? hidden.yw : hidden.xz);\n"
         "    vec3 room = room_light * (vec3(0.98, 0.95, 0.91) + (0.06 * n.x + 0.12 * n.y - 0.04 * n.z));\n"
         "    lit = mix(room, lit, min(1.0, 4.0 * seen.x)) * (0.6 + 0.4 * seen.y);\n",
-    .fragment_declarations = "",
-    .fragment_code = "",
+    .uniforms = room_uniforms,
+    .varies_colour = true,
     .is_light = true,
     .order = 4,
-    .light = light_by_openness,
     .priced_on = model::effect_texture | model::effect_sun,
     .usual_price = {model::effect_openness, 0, 0, 0},
+    .light = light_by_openness,
+    .changes_nothing = [](const MaterialUse& material) { return material.open && (material.effects & model::effect_sun) != 0; },
+    .not_everywhere = "light would change materials without it",
 };
 const EffectModule openness_module = openness;
 

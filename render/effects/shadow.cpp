@@ -15,6 +15,10 @@ void take_shadow(const SurfacePoint& point, const model::Daylight& of_moment, Su
     out.lit -= out.by_sun * (1.0F - (before + (after - before) * of_moment.sun_between));
 }
 
+constexpr std::array<gl::UniformSource, 1> shadow_uniforms{{
+    {"sun_between", 1, [](const gl::PictureMoment& moment, float* to) { *to = moment.light.sun_between; }},
+}};
+
 }  // namespace
 
 constexpr EffectModule shadow{
@@ -22,15 +26,19 @@ constexpr EffectModule shadow{
     .name = "baked_shadow",
     .help = "no sun where something hides it, baked at the vertices for the whole day",
     .requested_by = "a mesh in the sun that something hides from it, in a bake of quality full",
+    .have = "lie in shadow",
+    .missing = "not measured: the bake is of quality draft, or nothing stands between sun and scene",
     .vertex_declarations = "in vec2 sun_seen;\nuniform float sun_between;\n",
     .vertex_code = "    lit -= by_sun * (1.0 - mix(sun_seen.x, sun_seen.y, sun_between));\n",
-    .fragment_declarations = "",
-    .fragment_code = "",
+    .uniforms = shadow_uniforms,
     .is_light = true,
     .order = 3,
-    .light = take_shadow,
     .priced_on = model::effect_texture | model::effect_sun,
     .usual_price = {model::effect_shadow, 0.9F, 0, 0},
+    .light = take_shadow,
+    .changes_nothing =  // its vertices see the sun all day
+    [](const MaterialUse& material) { return (material.effects & model::effect_sun) != 0; },
+    .not_everywhere = "light would change materials without it",
 };
 const EffectModule shadow_module = shadow;
 

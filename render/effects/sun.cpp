@@ -13,6 +13,13 @@ void light_by_sun(const SurfacePoint& point, const model::Daylight& of_moment, S
     out.lit *= glm::mix(of_moment.ground_light, of_moment.sky_light, 0.5F * point.normal.y + 0.5F) + out.by_sun;
 }
 
+constexpr std::array<gl::UniformSource, 4> sun_uniforms{{
+    {"sun_direction", 3, [](const gl::PictureMoment& moment, float* to) { put(moment.light.sun_direction, to); }},
+    {"sun_light", 3, [](const gl::PictureMoment& moment, float* to) { put(moment.light.sun_light, to); }},
+    {"ground_light", 3, [](const gl::PictureMoment& moment, float* to) { put(moment.light.ground_light, to); }},
+    {"sky_light", 3, [](const gl::PictureMoment& moment, float* to) { put(moment.light.sky_light, to); }},
+}};
+
 }  // namespace
 
 constexpr EffectModule sun{
@@ -20,17 +27,23 @@ constexpr EffectModule sun{
     .name = "sun",
     .help = "sun and sky light at the vertices",
     .requested_by = "a mesh with normals and a lit material",
+    .have = "are lit",
+    .missing = "every material is unlit",
+    .called_for = [](const MaterialFacts& material) { return material.lit; },
     .vertex_declarations =
         "uniform vec3 sun_direction;\nuniform vec3 sun_light;\nuniform vec3 ground_light;\nuniform vec3 sky_light;\n",
     .vertex_code =
         "    by_sun = sun_light * max(dot(n, sun_direction), 0.0);\n"
         "    lit *= mix(ground_light, sky_light, 0.5 * n.y + 0.5) + by_sun;\n",
-    .fragment_declarations = "",
-    .fragment_code = "",
+    .uniforms = sun_uniforms,
+    .varies_colour = true,
     .is_light = true,
-    .light = light_by_sun,
     .priced_on = model::effect_texture,
     .usual_price = {model::effect_sun, 2.3F, 1.4F, 0.06F},
+    .light = light_by_sun,
+    .changes_nothing =
+        [](const MaterialUse& material) { return material.no_sky && (material.effects & model::effect_openness) != 0; },
+    .not_everywhere = "light would change materials without it",
 };
 const EffectModule sun_module = sun;
 

@@ -8,10 +8,14 @@ constexpr EffectModule vertex_colour{
     .name = "vertex_colour",
     .help = "a colour at each vertex",
     .requested_by = "a mesh whose vertices carry colours",
+    .have = "have vertex colours",
+    .missing = "all vertex colours are white or absent",
+    .called_for = [](const MaterialFacts& material) { return material.vertex_colours; },
     .vertex_declarations = "in vec4 vertex_colour;\n",
     .vertex_code = "    v_colour *= vertex_colour;\n",
-    .fragment_declarations = "",
-    .fragment_code = "",
+    .varies_colour = true,
+    .changes_nothing = [](const MaterialUse& material) { return material.white; },
+    .not_everywhere = "a colour stands in vertices that do not show it",
 };
 const EffectModule vertex_colour_module = vertex_colour;
 

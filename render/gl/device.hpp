@@ -33,12 +33,28 @@ struct DrawItem {
     model::Index rep = 0;
 };
 
+/// What programs may read of the moment that a picture shows.
+struct PictureMoment {
+    model::Daylight light;  ///< `background` is the colour itself
+    double time_s = 0;      ///< of what moves
+    dvec3 eye{0.0};         ///< in the world, m
+    float pixel_rad = 0;    ///< angle of a pixel in the middle
+};
+
+/// A uniform of a program: its GLSL name, of `float` or `vec3`, and what writes its 1 or 3 floats. On the frame thread.
+struct UniformSource {
+    const char* name;
+    int components;
+    void (*write)(const PictureMoment& moment, float* to);
+};
+
 /// GLSL of one state class. render/effects makes it, so that this room knows no effect.
 struct ProgramSource {
     std::string vertex, fragment;
     std::string name{};  ///< of the state class, for people: "texture sun"
     /// In place of `fragment` where pixels have several samples: its alpha is the covered share of the pixel. Empty: `fragment`.
     std::string fragment_samples{};
+    std::vector<UniformSource> uniforms{};  ///< those that it declares, but `view_projection` and samplers
 };
 using ProgramFactory = std::function<ProgramSource(model::EffectMask)>;
 

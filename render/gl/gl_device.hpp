@@ -152,9 +152,10 @@ private:
 
     Pose pose_ GUARDED_BY(draws);
     mat4 view_projection_ GUARDED_BY(draws){1.0F};
-    model::Daylight light_ GUARDED_BY(draws), shown_light_ GUARDED_BY(draws);   ///< of the next picture, and of this one
-    const model::Model* moving_model_ GUARDED_BY(draws) = nullptr;              ///< whose placements may move
-    double time_s_ GUARDED_BY(draws) = 0, shown_time_s_ GUARDED_BY(draws) = 0;  ///< of the next picture, and of this one
+    model::Daylight light_ GUARDED_BY(draws);                       ///< of the next picture
+    const model::Model* moving_model_ GUARDED_BY(draws) = nullptr;  ///< whose placements may move
+    double time_s_ GUARDED_BY(draws) = 0;                           ///< of the next picture
+    PictureMoment shown_ GUARDED_BY(draws);                         ///< of this picture
     std::uint64_t frame_number_ GUARDED_BY(draws) = 0;
     FrameStats stats_ GUARDED_BY(draws);
     std::vector<Pending> pending_ GUARDED_BY(draws), blended_ GUARDED_BY(draws);

@@ -48,6 +48,7 @@ void GlDevice::begin_frame(const Pose& pose, float resolution) {
     stats_ = {};
     step_ = model::resolution_step(resolution);
     stats_.resolution = model::resolution_steps[step_];
+    shown_.pixel_rad /= stats_.resolution;
     stats_.samples = samples();
     stats_.filter = set_filter_;
     if (lost_) return;
@@ -65,9 +66,8 @@ void GlDevice::start_picture(const Pose& pose) {
     blended_count_ = 0;
     used_instances_ = used_commands_ = 0;
     state_known_ = false;
-    shown_light_ = light_;
-    shown_time_s_ = time_s_;
-    shown_light_.background *= vec3(options_.sky[0], options_.sky[1], options_.sky[2]);
+    shown_ = {light_, time_s_, pose.position, static_cast<float>(model::pixel_angle(pose, options_.viewport))};
+    shown_.light.background *= vec3(options_.sky[0], options_.sky[1], options_.sky[2]);
 }
 
 void GlDevice::draw_into(const Target& target) {
@@ -82,7 +82,7 @@ void GlDevice::draw_into(const Target& target) {
 }
 
 void GlDevice::clear_target() {
-    const vec3& behind = shown_light_.background;
+    const vec3& behind = shown_.light.background;
     gl_.ClearColor(behind.r, behind.g, behind.b, 1.0F);
     gl_.ClearDepthf(0.0F);
     gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -134,8 +134,9 @@ void GlDevice::draw_parts(std::span<const DrawItem> items, Parts parts) {
             if (part.index_count == 0 || (parts != Parts::all && is_blended(part) != (parts == Parts::blended))) continue;
             if (is_blended(part)) {
                 if (blended_count_ == blended_.size()) submit_blended();  // out of order rather than not at all
-                // Far first; ids break ties.
-                const std::uint64_t key = static_cast<std::uint64_t>(~distance_bits(distance)) << 32U | item.node;
+                // Far first, part by part; ids break ties.
+                const float away = draw::distance_m(part, placed.moves ? placed_now(rep.placement) : placed, pose_.position);
+                const std::uint64_t key = static_cast<std::uint64_t>(~distance_bits(away)) << 32U | item.node;
                 blended_[blended_count_++] = {key, p, item.rep};
                 continue;
             }
@@ -192,7 +193,7 @@ void GlDevice::submit(std::span<Pending> sorted) {
 /// A moving placement at the time of the picture.
 draw::Placed GlDevice::placed_now(std::uint32_t placement) const {
     const draw::Placed& placed = tables_.placements[placement];
-    return draw::moved(placed, model::pose_at(*moving_model_, tables_.motions[placement], shown_time_s_));
+    return draw::moved(placed, model::pose_at(*moving_model_, tables_.motions[placement], shown_.time_s));
 }
 
 void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
@@ -208,7 +209,7 @@ void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
     apply_depth_bias(tables_.depth_bias.ranks[tables_.depth_bias.first_of_rep[pending.rep] + pending.part - rep.first_part],
                      instance.rows);
     const bool by_hour = part.captured && (off_ & model::effect_sun) == 0;
-    instance.colour = by_hour ? darkened(part.colour, shown_light_.pictures) : part.colour;
+    instance.colour = by_hour ? darkened(part.colour, shown_.light.pictures) : part.colour;
     instance.alpha_cutoff = part.alpha_cutoff;
     instance.two_sided = part.two_sided ? 1.0F : 0.0F;
     instance.texture_layer = part.texture_layer;
@@ -241,8 +242,8 @@ void GlDevice::apply(const State& state) {
         set_coverage(program.coverage);
     if (program.frame != frame_number_) {
         gl_.UniformMatrix4fv(program.view_projection, 1, GL_FALSE, &view_projection_[0][0]);
-        write_light(gl_, program, shown_light_);
-        if (program.reads_sun_seen) set_sun_moment(gl_, program, geometry(), shown_light_.sun_moment);
+        write_uniforms(gl_, program, shown_);
+        if (program.reads_sun_seen) set_sun_moment(gl_, program, geometry(), shown_.light.sun_moment);
         program.frame = frame_number_;
     }
     if (state.texture != model::none && (all || state.texture != current_.texture)) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <utility>
 
 #include "render/model/model.hpp"
@@ -42,25 +41,6 @@ constexpr std::array<Attribute, 13> attributes{{
     {"alpha_cutoff", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, alpha_cutoff), 1},
     {"two_sided", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, two_sided), 1},
     {"texture_layer", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, texture_layer), 1},
-}};
-
-/// A uniform of the light: its GLSL name, and where Daylight has its floats.
-struct LightUniform {
-    const char* name;
-    std::size_t offset;
-    int components;
-};
-
-constexpr std::array<LightUniform, light_uniforms> uniforms_of_light{{
-    {"sun_direction", offsetof(model::Daylight, sun_direction), 3},
-    {"sun_light", offsetof(model::Daylight, sun_light), 3},
-    {"ground_light", offsetof(model::Daylight, ground_light), 3},
-    {"sky_light", offsetof(model::Daylight, sky_light), 3},
-    {"sun_between", offsetof(model::Daylight, sun_between), 1},
-    {"lamp_strength", offsetof(model::Daylight, lamp_strength), 1},
-    {"room_light", offsetof(model::Daylight, room_light), 1},
-    {"fog_density", offsetof(model::Daylight, fog_density), 1},
-    {"fog_colour", offsetof(model::Daylight, background), 3},
 }};
 
 /// A shader object, deleted where it goes out of scope: a program that it is attached to keeps it as long as it needs it.
@@ -150,8 +130,10 @@ Result<Program> make_program(const Api& gl, model::EffectMask mask, ProgramSourc
     program.source = std::move(source);
     program.id = *id;
     program.view_projection = gl.GetUniformLocation(program.id, "view_projection");
-    for (std::size_t i = 0; i < light_uniforms; ++i)
-        program.light[i] = gl.GetUniformLocation(program.id, uniforms_of_light[i].name);
+    for (const UniformSource& uniform : program.source.uniforms) {
+        const GLint location = gl.GetUniformLocation(program.id, uniform.name);
+        if (location >= 0) program.uniforms.push_back({location, uniform});
+    }
     program.reads_sun_seen = gl.GetAttribLocation(program.id, "sun_seen") >= 0;
     const GLint sampler = gl.GetUniformLocation(program.id, "base_colour");
     if (sampler >= 0) {
@@ -162,17 +144,14 @@ Result<Program> make_program(const Api& gl, model::EffectMask mask, ProgramSourc
     return program;
 }
 
-void write_light(const Api& gl, const Program& program, const model::Daylight& light) {
-    const auto* const bytes = reinterpret_cast<const std::byte*>(&light);
-    for (std::size_t i = 0; i < light_uniforms; ++i) {
-        if (program.light[i] < 0) continue;
+void write_uniforms(const Api& gl, const Program& program, const PictureMoment& moment) {
+    for (const BoundUniform& uniform : program.uniforms) {
         std::array<float, 3> value{};
-        const LightUniform& uniform = uniforms_of_light[i];
-        std::memcpy(value.data(), bytes + uniform.offset, static_cast<std::size_t>(uniform.components) * sizeof(float));
-        if (uniform.components == 1) {
-            gl.Uniform1f(program.light[i], value[0]);
+        uniform.source.write(moment, value.data());
+        if (uniform.source.components == 1) {
+            gl.Uniform1f(uniform.location, value[0]);
         } else {
-            gl.Uniform3f(program.light[i], value[0], value[1], value[2]);
+            gl.Uniform3f(uniform.location, value[0], value[1], value[2]);
         }
     }
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "render/gl/api.hpp"
 #include "render/gl/device.hpp"
@@ -22,21 +23,24 @@ struct Instance {
 };
 static_assert(sizeof(Instance) == 64);
 
-/// Uniforms of a moment's light.
-constexpr std::size_t light_uniforms = 9;
+/// A uniform that a program reads, and its location.
+struct BoundUniform {
+    GLint location;
+    UniformSource source;
+};
 
 /// A linked program for one set of effects, with the places of its uniforms.
 struct Program {
     model::EffectMask mask = 0;
     ProgramSource source;
     GLuint id = 0, vertex_array = 0;
-    GLint view_projection = -1;                 ///< uniform location
-    std::array<GLint, light_uniforms> light{};  ///< locations of the light's uniforms that it reads, -1: not used
-    std::uint64_t frame = 0;                    ///< the frame whose uniforms it holds
-    std::uint32_t attributes = 0;               ///< bit a location
-    std::uint32_t sun_moment = 0;               ///< of SunSeen, from which its vertex array reads
-    bool reads_sun_seen = false;                ///< it has to follow the moment
-    bool coverage = false;                      ///< its alpha says which samples of a pixel are drawn
+    GLint view_projection = -1;  ///< uniform location
+    std::vector<BoundUniform> uniforms;
+    std::uint64_t frame = 0;       ///< the frame whose uniforms it holds
+    std::uint32_t attributes = 0;  ///< bit a location
+    std::uint32_t sun_moment = 0;  ///< of SunSeen, from which its vertex array reads
+    bool reads_sun_seen = false;   ///< it has to follow the moment
+    bool coverage = false;         ///< its alpha says which samples of a pixel are drawn
 };
 
 /// Buffers that every vertex array reads.
@@ -50,8 +54,8 @@ Result<GLuint> link_program(const Api& gl, const ProgramSource& source);
 /// link_program(), and the vertex array. samples: pixels have several.
 Result<Program> make_program(const Api& gl, model::EffectMask mask, ProgramSource source, bool samples,
                              const GeometryBuffers& buffers);
-/// Sets the uniforms of light that it reads. It must be in use.
-void write_light(const Api& gl, const Program& program, const model::Daylight& light);
+/// Sets the uniforms that it reads. It must be in use.
+void write_uniforms(const Api& gl, const Program& program, const PictureMoment& moment);
 /// Lets its vertex array, which must be bound, read the sun's visibility at this moment and the next.
 void set_sun_moment(const Api& gl, Program& program, const GeometryBuffers& buffers, std::uint32_t moment);
 void delete_program(const Api& gl, Program& program);

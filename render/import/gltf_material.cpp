@@ -130,6 +130,15 @@ void set_colour(Material& material, const std::vector<double>& linear) {
     material.colour[3] = std::clamp(static_cast<float>(linear[3]), 0.0F, 1.0F);
 }
 
+/// Extras `water`: true or false.
+std::optional<bool> water_of(const tinygltf::Material& from, const std::string& name, Scene& scene) {
+    if (!from.extras.IsObject() || !from.extras.Has("water")) return {};
+    const tinygltf::Value& value = from.extras.Get("water");
+    if (value.IsBool()) return value.Get<bool>();
+    scene.warnings.push_back(fmt::format("Material '{}': the extra 'water' is not true or false; it is left out", name));
+    return {};
+}
+
 /// KHR_materials_emissive_strength included. What is unlit shows its colour as it is, and glows no further.
 void read_emission(const tinygltf::Material& from, Material& material, Scene& scene) {
     if (material.unlit || from.emissiveFactor.size() != 3) return;
@@ -177,6 +186,7 @@ std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::
         material.alpha_cutoff = static_cast<float>(from.alphaCutoff);
         material.two_sided = from.doubleSided;
         material.unlit = from.extensions.contains("KHR_materials_unlit");
+        material.water = water_of(from, material.name, scene);
         read_emission(from, material, scene);
         scene.materials.push_back(std::move(material));
         uses.push_back(use_of(reference));

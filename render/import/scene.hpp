@@ -27,6 +27,7 @@ struct Material {
     model::AlphaMode alpha = model::AlphaMode::opaque;
     bool two_sided = false;
     bool unlit = false;
+    std::optional<bool> water = {};  ///< as its file says
     vec3 emission{0};             ///< linear RGB of the light that it sends out by itself; finite, 0 or more, strength included
     bool emission_image = false;  ///< the file spreads its glow by an image, which is not used: emission is 0
     std::vector<std::string> lacks = {};  ///< missing things that the file asks for: images, the material itself

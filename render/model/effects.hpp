@@ -18,9 +18,10 @@ enum Effect : std::uint32_t {
     effect_shadow = 1U << 6U,         ///< no sun where something hides it, as baked at the vertices for the whole day
     effect_lamps = 1U << 7U,          ///< light of lamps and of what glows, as baked at the vertices
     effect_fog = 1U << 8U,            ///< what is far takes the colour of the sky
+    effect_water = 1U << 9U,          ///< waves go over it
 };
 using EffectMask = std::uint32_t;
-constexpr int effect_count = 9;
+constexpr int effect_count = 10;
 constexpr int first_effect_count = 5;  ///< of the oldest files that open
 
 /// Whether a scene calls for an effect, and the evidence. One entry for every effect, called for or not.

@@ -95,5 +95,26 @@ TEST(Findings, OfABakedModelCountItsFullDetail) {
     EXPECT_EQ(model->effects[2].triangles, model->triangles());
 }
 
+TEST(Findings, OfWaterGoByExtrasAndByNamesWhereTheseAreAsked) {
+    for (const char* name : {"water", "Water", "Pond_water.001", "oceanicWater.png", "swamp water", "WATER-2"})
+        EXPECT_TRUE(bake::is_named_water(name)) << name;
+    for (const char* name :
+         {"waterfall", "waterRockA.png", "underwater", "UNDERWATER", "stktex_waterLily_a.png", "wate", "", "12"})
+        EXPECT_FALSE(bake::is_named_water(name)) << name;
+    importer::Scene scene;
+    scene.materials.resize(3);
+    scene.materials[0].name = "lakeWater";
+    scene.materials[1].name = "still water";
+    scene.materials[1].water = false;
+    scene.materials[2].water = true;
+    for (const bool by_name : {false, true}) {
+        model::Model model;
+        bake::add_materials(scene, model, by_name);
+        EXPECT_EQ((model.materials[0].effects & model::effect_water) != 0, by_name);
+        EXPECT_EQ(model.materials[1].effects & model::effect_water, 0U);
+        EXPECT_NE(model.materials[2].effects & model::effect_water, 0U);
+    }
+}
+
 }  // namespace
 }  // namespace surefoot

@@ -73,7 +73,7 @@ struct EffectScene {
         using namespace model;
         constexpr EffectMask lit = effect_sun | effect_openness;
         constexpr std::array<EffectMask, objects> own{
-            effect_texture | lit | effect_shadow | effect_fog,
+            effect_texture | lit | effect_shadow | effect_fog | effect_water,
             effect_vertex_colour | lit | effect_fog,
             effect_texture | effect_vertex_colour | effect_sun | effect_shadow,
             lit | effect_lamps,

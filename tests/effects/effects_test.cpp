@@ -48,6 +48,34 @@ TEST(Programs, the_bare_one_mentions_no_effect) {
     }
 }
 
+TEST(Programs, the_bare_one_is_what_one_writes_by_hand) {
+    const auto source = effects::assemble_program(0);
+    EXPECT_EQ(source.vertex, R"(#version 430 core
+in vec3 position;
+in vec4 world_rows[3];
+in vec4 material_colour;
+uniform mat4 view_projection;
+flat out vec4 v_colour;
+void main() {
+    vec4 local = vec4(position, 1.0);
+    vec3 world = vec3(dot(world_rows[0], local), dot(world_rows[1], local), dot(world_rows[2], local));
+    v_colour = material_colour;
+    gl_Position = view_projection * vec4(world, 1.0);
+}
+)");
+    EXPECT_EQ(source.fragment, R"(#version 430 core
+flat in vec4 v_colour;
+out vec4 pixel;
+void main() {
+    vec4 colour = v_colour;
+    float opacity = 1.0;
+    pixel = vec4(colour.rgb, opacity);
+}
+)");
+    EXPECT_TRUE(source.uniforms.empty());
+    EXPECT_TRUE(source.fragment_samples.empty());
+}
+
 TEST(Modules, are_one_a_bit_in_bit_order) {
     const auto modules = effects::all_effects();
     ASSERT_EQ(modules.size(), static_cast<std::size_t>(model::effect_count));

@@ -44,6 +44,7 @@ constexpr std::array<Tolerance, model::effect_count> tolerances{{
     {model::effect_shadow, 1.5},
     {model::effect_lamps, 2},  // more light than white: it multiplies the rounded colour as well
     {model::effect_fog, 1.5},
+    {model::effect_water, 1.5},
 }};
 /// Pixels at edges that may differ. Corners are rounded to a part of a pixel, and a driver may take one mip level for 2 x 2
 /// pixels.
@@ -96,6 +97,7 @@ reference::Light evening() {
     light.fog_density = 0.11;
     light.background = {0.5, 0.4, 0.65};
     light.pictures = {0.83, 0.66, 0.71};
+    light.time_s = 12.75;
     return light;
 }
 
@@ -139,6 +141,7 @@ protected:
     void set_light(const reference::Light& light) {
         device_->draws.plays();
         device_->set_light(for_device(light));
+        device_->set_time(light.time_s);
     }
     /// Of every object, or of each step-th.
     gl::PixelImage picture(const model::Model& model, const Pose& pose, model::Index step = 1) {
@@ -289,6 +292,7 @@ TEST_P(Pictures, differ_from_the_reference_where_the_light_is_another_in_one_num
         {"fog", [](auto& l) { l.fog_density = 0.09; }},
         {"background", [](auto& l) { l.background.r += 0.1; }},
         {"pictures", [](auto& l) { l.pictures.g += 0.1; }},
+        {"time", [](auto& l) { l.time_s += 0.4; }},
     };
     for (const auto& [name, change] : changes) {
         reference::Light other = evening();

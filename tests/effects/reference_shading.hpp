@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +25,7 @@ struct Light {
     double fog_density = 0;    ///< at a distance of 1 / density, half is left
     dvec3 background{1.0};     ///< multiplies the sky, which is the fog's colour too
     dvec3 pictures{1.0};       ///< multiplies what was captured by the light of the bake
+    double time_s = 0;         ///< since waves began
 };
 
 /// As it is where nobody sets another: lamps are off. At the visibility, one part in twenty comes through the fog.
@@ -183,6 +185,26 @@ inline dvec4 bilinear(const model::Model& model, const model::Texture& texture, 
     return (1.0 - (row - top)) * between(top) + (row - top) * between(top + 1);
 }
 
+/// How much brighter three waves make water. Each goes its way as waves of its length do in deep water, and fades where a pixel
+/// is a good part of it. How far a pixel reaches over the water goes by its distance and by how steeply one looks down.
+inline double brightness_of_water(const View& view, const dvec3& from_eye) {
+    struct Wave {
+        dvec2 per_m;  ///< radians, eastwards and southwards
+        double strength;
+    };
+    constexpr std::array<Wave, 3> waves{{{{0.79, 0.34}, 0.10}, {{-0.62, 1.93}, 0.08}, {{4.31, -2.19}, 0.06}}};
+    const double pixel_rad = 2.0 * std::tan(0.5 * view.pose.fov_y_rad) / view.viewport.height;
+    const double far = glm::length(from_eye), sine = std::max(std::abs(from_eye.y), 1e-3) / far;
+    const dvec3 place = view.pose.position + from_eye;
+    double brightness = 1;
+    for (const Wave& wave : waves) {
+        const double k = glm::length(wave.per_m), shown = std::clamp(1.6 - k * pixel_rad * far / sine, 0.0, 1.0);
+        const double phase = glm::dot(wave.per_m, dvec2(place.x, place.z)) - std::sqrt(9.81 * k) * view.light.time_s;
+        brightness += shown * wave.strength * std::cos(phase);
+    }
+    return brightness;
+}
+
 /// What a triangle does to a pixel.
 struct Shade {
     dvec4 colour{0.0};           ///< 0..1; the fourth number is the opacity
@@ -202,6 +224,8 @@ inline Shade colour_at_pixel(const View& view, const model::Material& material, 
         shade.is_close_call = std::abs(shade.colour.a - material.alpha_cutoff) < 2.0 / 255.0;
     }
     if (!has(material, model::effect_blend)) shade.colour.a = 1;
+    if (has(material, model::effect_water))
+        shade.colour = dvec4(brightness_of_water(view, fragment.at.from_eye) * dvec3(shade.colour), shade.colour.a);
     if (has(material, model::effect_fog)) {  // it takes a pixel's colour, and leaves how much of it shows
         const double depth_m = glm::dot(fragment.at.from_eye, view.pose.forward());
         const double left = std::pow(2.0, -view.light.fog_density * depth_m);

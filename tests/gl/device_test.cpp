@@ -213,6 +213,24 @@ TEST_F(DeviceTest, blended_items_are_drawn_back_to_front_whatever_their_order) {
     }
 }
 
+TEST_F(DeviceTest, blended_parts_of_one_item_are_drawn_back_to_front_whatever_their_order) {
+    auto red_glass = plain(1, 0, 0, 0.5F, model::effect_blend), green_glass = plain(0, 1, 0, 0.5F, model::effect_blend);
+    red_glass.alpha = green_glass.alpha = model::AlphaMode::blend;
+    const auto pane = [](float z) { return std::array<vec3, 3>{vec3(-30, -20, z), vec3(30, -20, z), vec3(0, 40, z)}; };
+    for (const bool front_first : {true, false}) {
+        SmallModel scene;
+        const auto red_pane = scene.material(red_glass), green_pane = scene.material(green_glass);
+        const auto both = scene.triangle(front_first ? green_pane : red_pane, pane(front_first ? -2.0F : -3.0F));
+        scene.triangle(front_first ? red_pane : green_pane, pane(front_first ? -3.0F : -2.0F));
+        const auto wall = scene.square(scene.material(plain(0, 0, 0)), at(0, 0, -4), 10);
+        model::Model model = scene.finish();
+        model.reps[model.nodes[both].first_rep].part_count = 2;  // the second pane is a part of the first one's object
+        const Pixel seen = pixel(picture(model, {both, wall}), 50, 50);
+        EXPECT_NEAR(seen[0], 64, 1) << front_first;
+        EXPECT_NEAR(seen[1], 128, 1) << front_first;
+    }
+}
+
 TEST_F(DeviceTest, vertex_colours_multiply_the_material) {
     SmallModel scene;
     const auto node =

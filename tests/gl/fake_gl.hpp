@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -29,6 +30,8 @@ struct FakeGl {
     int compiles = 0, bad_compile = 0;   ///< bad_compile: the how many-th compile fails, from 1
     bool links = true;
     GLuint names = 0;
+    std::set<std::string> uniforms{};            ///< that programs were asked for
+    int blended_passes = 0;                      ///< times that blending began
     std::vector<std::vector<std::byte>> mapped;  ///< memory of the mapped buffers
     /// Objects of every kind, made and not deleted.
     [[nodiscard]] int objects() const {
@@ -109,6 +112,11 @@ inline gl::Api fake_api() {
     api.GetShaderiv = [](GLuint, GLenum, GLint* ok) {
         *ok = FakeGl::get().compiles == FakeGl::get().bad_compile ? GL_FALSE : GL_TRUE;
     };
+    api.GetUniformLocation = [](GLuint, const GLchar* name) -> GLint {
+        FakeGl::get().uniforms.insert(name);
+        return 0;
+    };
+    api.Enable = [](GLenum what) { FakeGl::get().blended_passes += what == GL_BLEND ? 1 : 0; };
     api.GetProgramiv = [](GLuint, GLenum, GLint* ok) { *ok = FakeGl::get().links ? GL_TRUE : GL_FALSE; };
     api.FenceSync = [](GLenum, GLbitfield) -> GLsync {
         ++FakeGl::get().syncs;

@@ -375,5 +375,21 @@ TEST(GltfFog, OfSeveralFilesTheThickestStays) {
     }
 }
 
+TEST(GltfWater, IsWhatAMaterialsExtraSays) {
+    const auto of = [](const std::string& extras) {
+        TriangleGltf gltf;
+        gltf.primitive += R"(,"material":0)";
+        gltf.more = R"(,"materials":[{"name":"pond",)" + extras + R"("doubleSided":true}])";
+        return import_good(gltf);
+    };
+    EXPECT_EQ(of(R"("extras":{"water":true},)").materials[0].water, true);
+    EXPECT_EQ(of(R"("extras":{"water":false},)").materials[0].water, false);
+    EXPECT_EQ(of("").materials[0].water, std::nullopt);
+    EXPECT_TRUE(of(R"("extras":{"wet":1},)").warnings.empty());
+    const Scene wrong = of(R"("extras":{"water":"deep"},)");
+    EXPECT_EQ(wrong.materials[0].water, std::nullopt);
+    EXPECT_TRUE(warns(wrong, "Material 'pond': the extra 'water' is not true or false"));
+}
+
 }  // namespace
 }  // namespace surefoot::importer::test

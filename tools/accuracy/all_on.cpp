@@ -10,25 +10,24 @@ namespace surefoot::accuracy {
 
 namespace {
 
-/// What all vertices of a material have.
+/// A material, and whether anything is drawn with it.
 struct Held {
-    bool white = true;      ///< a colour that changes nothing
-    bool open = true;       ///< nothing is hidden from them
-    bool no_sky = true;     ///< openness leaves nothing of the sun
-    bool any_part = false;  ///< some part uses the material
+    effects::MaterialUse use;
+    bool any_part = false;
 };
 
 std::vector<Held> held_by_materials(const model::Model& m) {
     std::vector<Held> out(m.materials.size());
     for (const model::Part& part : m.parts) {
         Held& held = out[part.material];
+        effects::MaterialUse& use = held.use;
         held.any_part = true;
         const bool two_sided = m.materials[part.material].two_sided;
         for (std::uint32_t i = 0; i < part.index_count; ++i) {
             const model::Vertex& v = m.vertices[part.first_vertex + m.indices[part.first_index + i]];
-            held.white = held.white && std::ranges::all_of(v.colour, [](std::uint8_t c) { return c == 255; });
-            held.open = held.open && std::ranges::all_of(v.hidden, [](std::uint8_t h) { return h == 0; });
-            held.no_sky = held.no_sky && v.hidden[0] == 255 && (!two_sided || v.hidden[1] == 255);
+            use.white = use.white && std::ranges::all_of(v.colour, [](std::uint8_t c) { return c == 255; });
+            use.open = use.open && std::ranges::all_of(v.hidden, [](std::uint8_t h) { return h == 0; });
+            use.no_sky = use.no_sky && v.hidden[0] == 255 && (!two_sided || v.hidden[1] == 255);
         }
     }
     return out;
@@ -44,31 +43,12 @@ model::Index add_white_texture(model::Model& m) {
 }
 
 /// Those of `all` that the material may have besides its own, its picture staying as it is.
-model::EffectMask addable(const model::Material& material, const Held& held, model::EffectMask all) {
-    model::EffectMask mask = model::effect_texture | model::effect_alpha_mask;
-    if (held.white) mask |= model::effect_vertex_colour;
-    if ((material.effects & model::effect_openness) != 0 && held.no_sky) mask |= model::effect_sun;
-    if ((material.effects & model::effect_sun) != 0 && held.open) mask |= model::effect_openness;
-    const model::EffectMask own = material.effects | (mask & all);
-    if ((own & model::effect_sun) != 0) mask |= model::effect_shadow;  // without it, its vertices see the sun all day
-    if ((own & (model::effect_sun | model::effect_openness)) != 0) mask |= model::effect_lamps;  // no lamp reaches its vertices
-    return mask & all & ~material.effects;
-}
-
-const char* why_not_everywhere(model::EffectMask bit) {
-    switch (bit) {
-        case model::effect_vertex_colour:
-            return "a colour stands in vertices that do not show it";
-        case model::effect_sun:
-        case model::effect_openness:
-        case model::effect_shadow:
-        case model::effect_lamps:
-            return "light would change materials without it";
-        case model::effect_blend:
-            return "what is blended is drawn last and hides nothing behind it";
-        default:
-            return "";
-    }
+model::EffectMask addable(const model::Material& material, effects::MaterialUse use, model::EffectMask all) {
+    use.effects = material.effects;
+    for (const effects::EffectModule& module : effects::all_effects())
+        if ((all & module.bit) != 0 && module.changes_nothing != nullptr && module.changes_nothing(use))
+            use.effects |= module.bit;
+    return use.effects & ~material.effects;
 }
 
 }  // namespace
@@ -114,7 +94,7 @@ AllOn turn_all_on(model::Model& m) {
     const model::Index white = (all & model::effect_texture) != 0 ? add_white_texture(m) : model::none;
     for (std::size_t i = 0; i < held.size(); ++i) {
         model::Material& material = m.materials[i];
-        const model::EffectMask added = addable(material, held[i], all);
+        const model::EffectMask added = addable(material, held[i].use, all);
         if ((added & model::effect_texture) != 0) material.texture = white;
         if ((added & model::effect_alpha_mask) != 0) material.alpha_cutoff = 0;
         material.effects |= added;
@@ -132,7 +112,7 @@ AllOn turn_all_on(model::Model& m) {
             if (module.bit != 1U << bit) continue;
             out.effects[e].triangles = before[bit];
             out.effects[e].all_on_triangles = after[bit];
-            if (after[bit] < out.triangles) out.effects[e].why_not = why_not_everywhere(module.bit);
+            if (after[bit] < out.triangles) out.effects[e].why_not = module.not_everywhere;
         }
     }
     return out;

@@ -30,7 +30,7 @@ struct BakeArguments {
     double fog_visibility_m = 0;
     CLI::Option* fog = nullptr;
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
-    bool allow_incomplete = false, whole_objects = false, json = false;
+    bool allow_incomplete = false, whole_objects = false, water = false, json = false;
 };
 
 constexpr std::array<std::string_view, 2> qualities = {"draft", "full"};
@@ -115,6 +115,7 @@ int run_bake(const BakeArguments& a, const Context& context) {
     options.level_ratio = a.level_ratio * 0.01;
     if (a.sun_hour->count() > 0) options.sun = a.sun;
     if (a.fog->count() > 0) options.fog_visibility_m = a.fog_visibility_m;
+    options.water_by_name = a.water;
     options.workers = settings->values.workers;
     options.frame_us = 1e6 / settings->values.rate_hz;
     options.costs = &*costs;
@@ -187,6 +188,9 @@ void add_bake(CLI::App& app, Context& context) {
                            "Metres that one sees far in fog: what is black keeps 5 % of its contrast there. 0: none. "
                            "Default: extras.fog_visibility_m of the glTF scene")
                  ->check(number_within(0, 1e7, "m"));
+    c->add_flag("--water", a->water,
+                "Materials move like water if their names end with that word, as in Pond_Water. "
+                "The extra 'water' of a glTF material, true or false, says it without this");
     add_setting(c, a->settings, "--workers", "workers", "Threads; 0: one per core. The result does not depend on it.");
     add_setting(c, a->settings, "--rate", "rate_hz", "Frame rate; no item of the model may cost more than 1/16 of a frame.");
     c->add_flag("--allow-incomplete", a->allow_incomplete,
