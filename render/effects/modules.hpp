@@ -20,7 +20,7 @@ extern const EffectModule water_module;
 
 inline constexpr std::array<const EffectModule*, model::effect_count> registry{
     &texture_module,  &vertex_colour_module, &sun_module,   &alpha_mask_module, &blend_module,
-    &openness_module, &shadow_module,        &lamps_module, &fog_module, &water_module};
+    &openness_module, &shadow_module,        &lamps_module, &fog_module,        &water_module};
 
 /// Writes a uniform of type vec3.
 constexpr void put(const vec3& value, float* to) {

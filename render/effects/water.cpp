@@ -8,8 +8,8 @@ namespace surefoot::effects {
 
 namespace {
 
-/// Radians a metre to east and south. Their lengths are 7.3, 3.1 and 1.3 m.
-constexpr std::array<vec2, 3> wave_numbers{vec2{0.79F, 0.34F}, vec2{-0.62F, 1.93F}, vec2{4.31F, -2.19F}};
+/// Radians a metre to east and south. Their lengths are 7.3, 5.1 and 1.9 m.
+constexpr std::array<vec2, 3> wave_numbers{vec2{0.79F, 0.34F}, vec2{-0.62F, 1.06F}, vec2{2.95F, -1.5F}};
 
 /// Phases of the waves at the eye. In deep water a wave of k radians a metre turns by sqrt(9.81 k) radians a second.
 void write_phases(const gl::PictureMoment& moment, float* to) {
@@ -28,6 +28,7 @@ constexpr std::array<gl::UniformSource, 2> water_uniforms{{
 }  // namespace
 
 // A pixel covers more water the lower one looks along it. What it covers of a wave is `along` radians; beyond 1.6 it shows none.
+// Waves bend each other, or they would look woven.
 constexpr EffectModule water{
     .bit = model::effect_water,
     .name = "water_waves",
@@ -41,10 +42,11 @@ constexpr EffectModule water{
     .fragment_declarations = "in vec3 v_from_eye;\nuniform vec3 wave_phases;\nuniform float pixel_rad;\n",
     .fragment_code =
         "    float along = pixel_rad * dot(v_from_eye, v_from_eye) / max(abs(v_from_eye.y), 1e-3);\n"
-        "    vec3 seen = clamp(1.6 - along * vec3(0.86, 2.03, 4.83), 0.0, 1.0);\n"
-        "    vec3 wave = wave_phases + vec3(dot(v_from_eye.xz, vec2(0.79, 0.34)), dot(v_from_eye.xz, vec2(-0.62, 1.93)),\n"
-        "                                   dot(v_from_eye.xz, vec2(4.31, -2.19)));\n"
-        "    colour.rgb *= 1.0 + dot(seen * vec3(0.10, 0.08, 0.06), cos(wave));\n",
+        "    vec3 seen = clamp(1.6 - along * vec3(0.86, 1.23, 3.31), 0.0, 1.0);\n"
+        "    vec3 wave = wave_phases + vec3(dot(v_from_eye.xz, vec2(0.79, 0.34)), dot(v_from_eye.xz, vec2(-0.62, 1.06)),\n"
+        "                                   dot(v_from_eye.xz, vec2(2.95, -1.5)));\n"
+        "    wave = vec3(wave.xy + 0.9 * sin(wave.yx), wave.z + sin(wave.x));\n"
+        "    colour.rgb *= 1.0 + dot(seen * vec3(0.07, 0.07, 0.06), cos(wave));\n",
     .uniforms = water_uniforms,
     .order = 8,
     .priced_on = model::effect_texture | model::effect_sun,

@@ -192,15 +192,21 @@ inline double brightness_of_water(const View& view, const dvec3& from_eye) {
         dvec2 per_m;  ///< radians, eastwards and southwards
         double strength;
     };
-    constexpr std::array<Wave, 3> waves{{{{0.79, 0.34}, 0.10}, {{-0.62, 1.93}, 0.08}, {{4.31, -2.19}, 0.06}}};
+    constexpr std::array<Wave, 3> waves{{{{0.79, 0.34}, 0.07}, {{-0.62, 1.06}, 0.07}, {{2.95, -1.5}, 0.06}}};
     const double pixel_rad = 2.0 * std::tan(0.5 * view.pose.fov_y_rad) / view.viewport.height;
     const double far = glm::length(from_eye), sine = std::max(std::abs(from_eye.y), 1e-3) / far;
     const dvec3 place = view.pose.position + from_eye;
+    std::array<double, 3> phase{};
+    for (std::size_t i = 0; i < waves.size(); ++i)
+        phase[i] =
+            glm::dot(waves[i].per_m, dvec2(place.x, place.z)) - std::sqrt(9.81 * glm::length(waves[i].per_m)) * view.light.time_s;
+    // They bend each other.
+    const std::array<double, 3> curved{phase[0] + 0.9 * std::sin(phase[1]), phase[1] + 0.9 * std::sin(phase[0]),
+                                       phase[2] + std::sin(phase[0])};
     double brightness = 1;
-    for (const Wave& wave : waves) {
-        const double k = glm::length(wave.per_m), shown = std::clamp(1.6 - k * pixel_rad * far / sine, 0.0, 1.0);
-        const double phase = glm::dot(wave.per_m, dvec2(place.x, place.z)) - std::sqrt(9.81 * k) * view.light.time_s;
-        brightness += shown * wave.strength * std::cos(phase);
+    for (std::size_t i = 0; i < waves.size(); ++i) {
+        const double k = glm::length(waves[i].per_m), shown = std::clamp(1.6 - k * pixel_rad * far / sine, 0.0, 1.0);
+        brightness += shown * waves[i].strength * std::cos(curved[i]);
     }
     return brightness;
 }

@@ -47,7 +47,8 @@ inline const std::vector<Room>& rooms() {
         {"render/import", {"render/model", "render/image"}},
         // Calibration draws with the programs of the effects whose cost it measures.
         {"render/measure", {"render/model", "render/gl", "render/effects", "rt/clock", "rt/threads"}},
-        {"render/bake", {"render/model", "render/model/ground", "render/image", "render/import", "render/measure", "render/effects"}},
+        {"render/bake",
+         {"render/model", "render/model/ground", "render/image", "render/import", "render/measure", "render/effects"}},
         {"render/draw", {"render/model"}},
         {"render/gl", {"render/model", "render/draw"}},
         {"render/prepare", {"render/model", "rt/clock"}},
