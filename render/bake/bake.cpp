@@ -15,6 +15,7 @@
 
 #include "render/bake/alpha_bleed.hpp"
 #include "render/bake/boxes.hpp"
+#include "render/bake/cluster_coverage.hpp"
 #include "render/bake/ground.hpp"
 #include "render/bake/limits.hpp"
 #include "render/bake/materials.hpp"
@@ -79,6 +80,7 @@ struct BakeContext {
     bool shows_pictures() const;
     bool wants_box(std::uint32_t entity) const;
     void emit();
+    bool mend_clusters();
     std::vector<bool> wanted_boxes() const;
     void bound(const ProxyInput& input, model::Index n, BoxForm& box) const;
     std::optional<PlacedBoxes> add_boxes();
@@ -89,7 +91,6 @@ struct BakeContext {
     void find_effects();
     void emit_object(model::Index node, std::uint32_t object, const std::vector<EmittedChain>& chains);
     void emit_cluster(model::Index node, std::uint32_t cluster, std::vector<std::pair<model::Index, std::uint32_t>>& open);
-    model::Index add_name(const std::string& name);
 };
 
 ProxyInput BakeContext::proxy_input() const {
@@ -257,14 +258,6 @@ bool BakeContext::wants_box(std::uint32_t entity) const {
     return forms[objects[entity].mesh].triangles > (objects[entity].piece ? std::max(above, min_piece_box_triangles) : above);
 }
 
-model::Index BakeContext::add_name(const std::string& name) {
-    if (name.empty()) return 0;
-    const auto at = static_cast<model::Index>(model.names.size());
-    model.names += name;
-    model.names.push_back('\0');
-    return at;
-}
-
 void BakeContext::emit_object(model::Index index, std::uint32_t which, const std::vector<EmittedChain>& chains) {
     const PlacedObject& object = objects[which];
     const MeshForm& form = forms[object.mesh];
@@ -274,7 +267,7 @@ void BakeContext::emit_object(model::Index index, std::uint32_t which, const std
     node.importance = object.importance;
     node.box = object.box;
     node.triangles = form.triangles;
-    node.name = add_name(object.name);
+    node.name = add_name(model, object.name);
     node.first_rep = static_cast<model::Index>(model.reps.size());
     emit_representations(chains[object.mesh], object.world, model, object.motion);
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
@@ -302,7 +295,9 @@ void BakeContext::emit_cluster(model::Index index, std::uint32_t which,
 }
 
 void BakeContext::emit() {
-    model.names.assign(1, '\0');
+    clear_emitted(model);
+    entities.clear();
+    closed.clear();
     std::vector<EmittedChain> chains(forms.size());
     for (std::size_t m = 0; m < forms.size(); ++m) {
         if (forms[m].triangles == 0) continue;
@@ -327,6 +322,18 @@ void BakeContext::emit() {
         if (parent.kind == model::NodeKind::cluster) parent.triangles += node.triangles;
         parent.box.grow(node.box);
     }
+}
+
+/// Meshes of clusters cover about what is below them: else they change, and all is emitted anew.
+bool BakeContext::mend_clusters() {
+    std::vector<LodChain*> chains(entities.size(), nullptr);
+    for (std::size_t n = 0; n < entities.size(); ++n)
+        if (entities[n] >= objects.size()) chains[n] = &clusters[entities[n] - objects.size()].chain;
+    const auto all = [](std::size_t n, const std::function<void(std::size_t)>& body) { for_all(n, body); };
+    Stage stage(progress, "coverage", mend_steps(model));
+    const std::optional<bool> changed = bake::mend_clusters(model, chains, all, [&] { return stage.step(); });
+    if (changed.value_or(false)) emit();
+    return changed.has_value();
 }
 
 /// Bounds a node's box. A box that cannot be its coarsest form loses its faces.
@@ -393,16 +400,7 @@ void BakeContext::find_effects() {
         for (const GeometryPart& part : forms[object.mesh].chain.levels.back().parts)
             material_triangles[part.material] += part.indices.size() / 3;
     }
-    std::vector<bool> used(model.materials.size(), false);
-    for (const model::Part& part : model.parts) used[part.material] = true;
-    for (const auto& [copy, original] : light.openness.copies) {  // what only copies are drawn with is found without the sun
-        if (!used[copy] || used[original]) continue;
-        used[original] = true;
-        model.materials[original].effects = model.materials[copy].effects;
-    }
-    for (std::size_t m = 0; m < used.size(); ++m) {  // what nothing is drawn with calls for nothing
-        if (!used[m]) model.materials[m].effects = 0;
-    }
+    keep_used_effects(model, light.openness.copies);
     model.effects = bake::find_effects(model, material_triangles, light);
     add_sun_reason(scene, options.sun, model.effects);
 }
@@ -460,7 +458,7 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         return ok.error();
     arena.execute([&] {
         context.emit();
-        done = context.measure_light();
+        done = context.mend_clusters() && context.measure_light();
         if (!done) return;
         std::optional<PlacedBoxes> boxes = context.add_boxes();
         done = boxes.has_value();

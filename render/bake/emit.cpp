@@ -11,6 +11,24 @@
 
 namespace surefoot::bake {
 
+void clear_emitted(model::Model& model) {
+    model.names.assign(1, '\0');
+    model.vertices.clear();
+    model.indices.clear();
+    model.parts.clear();
+    model.placements.clear();
+    model.reps.clear();
+    model.nodes.clear();
+}
+
+model::Index add_name(model::Model& model, const std::string& name) {
+    if (name.empty()) return 0;
+    const auto at = static_cast<model::Index>(model.names.size());
+    model.names += name;
+    model.names.push_back('\0');
+    return at;
+}
+
 EmittedChain emit_chain(const LodChain& chain, model::Model& model) {
     EmittedChain out;
     out.chain = &chain;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "render/bake/capture_box.hpp"
@@ -24,6 +25,11 @@ struct EmittedChain {
     dvec3 centre{0};
     const LodChain* chain = nullptr;
 };
+
+/// Takes out all that the functions below add, and nodes and names. Materials and textures stay.
+void clear_emitted(model::Model& model);
+/// Where the name lies in the model's names; 0: none.
+model::Index add_name(model::Model& model, const std::string& name);
 
 EmittedChain emit_chain(const LodChain& chain, model::Model& model);
 

@@ -311,6 +311,18 @@ std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model:
                   {std::to_integer<int>(texel[0]), std::to_integer<int>(texel[1]), std::to_integer<int>(texel[2])});
 }
 
+void keep_used_effects(model::Model& model, std::span<const std::pair<model::Index, model::Index>> copies) {
+    std::vector<bool> used(model.materials.size(), false);
+    for (const model::Part& part : model.parts) used[part.material] = true;
+    for (const auto& [copy, original] : copies) {  // what only copies are drawn with is found without the sun
+        if (!used[copy] || used[original]) continue;
+        used[original] = true;
+        model.materials[original].effects = model.materials[copy].effects;
+    }
+    for (std::size_t m = 0; m < used.size(); ++m)
+        if (!used[m]) model.materials[m].effects = 0;
+}
+
 std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
                                                const SceneLight& light) {
     std::vector<model::EffectMask> masks;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "render/bake/geometry.hpp"
@@ -36,6 +37,9 @@ std::array<std::uint8_t, 4> tinted(const model::Material& material, const model:
 /// The same, with the texture colour around the uv of the vertex. For vertices without triangles.
 std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model::Material& material, const model::Vertex& vertex);
 
+/// What nothing is drawn with calls for no effects. copies: materials that stand for others without the sun, and which; an
+/// original of which only the copy is drawn takes the copy's effects.
+void keep_used_effects(model::Model& model, std::span<const std::pair<model::Index, model::Index>> copies);
 /// One finding an effect, with its reason. triangles_of_material: full detail.
 std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
                                                const SceneLight& light = {});
