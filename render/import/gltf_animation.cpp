@@ -14,6 +14,8 @@ namespace surefoot::importer {
 namespace {
 
 constexpr std::size_t max_keys_of_motion = 1U << 16U;
+/// Of all tracks of a file: a translation and a rotation for each key that a model may have.
+constexpr std::uint64_t max_keys_of_file = 2 * std::uint64_t{model::max_motion_keys};
 constexpr double unit_slack = 0.01;  // exporters write rotations as rounded bytes
 
 Between between_of(const std::string& interpolation) {
@@ -42,7 +44,15 @@ AnimationReader::AnimationReader(const tinygltf::Model& model, const std::string
       first_motion_(scene.motions.size()) {
     if (model.animations.empty()) return;
     find_drawn();
+    count_keys();
+    if (keys_ > max_keys_of_file) return;
     for (int a = 0; a < static_cast<int>(model.animations.size()); ++a) read_animation(a);
+}
+
+Result<void> AnimationReader::within_limits() const {
+    if (keys_ <= max_keys_of_file) return {};
+    return Error{file_, fmt::format("Its animations have {} keys, and a file may have {}", keys_, max_keys_of_file),
+                 "Export it with fewer keys a second, or with fewer animated nodes", ErrorKind::out_of_limits};
 }
 
 void AnimationReader::flawed(Flaw flaw, std::string text) {
@@ -71,7 +81,8 @@ std::string AnimationReader::name_of_animation(int animation) const {
 
 /// Bones and cameras move nothing that is drawn: nobody needs to hear of their flaws.
 void AnimationReader::find_drawn() {
-    std::vector<int> parent(nodes_.size(), -1);
+    std::vector<int>& parent = parents_;
+    parent.assign(nodes_.size(), -1);
     for (std::size_t n = 0; n < nodes_.size(); ++n)
         for (const int child : model_.nodes[n].children)
             if (holds_index(nodes_, child) && parent[static_cast<std::size_t>(child)] < 0)
@@ -81,6 +92,28 @@ void AnimationReader::find_drawn() {
         for (int at = static_cast<int>(n); at >= 0 && !drawn_[static_cast<std::size_t>(at)];
              at = parent[static_cast<std::size_t>(at)])
             drawn_[static_cast<std::size_t>(at)] = true;
+    }
+}
+
+/// All that is read below, before any of it is: a small file may have one long track at many nodes.
+void AnimationReader::count_keys() {
+    std::vector<std::size_t> first(nodes_.size(), model_.animations.size());  // the animation that moves a node
+    for (std::size_t a = 0; a < model_.animations.size(); ++a) {
+        const tinygltf::Animation& animation = model_.animations[a];
+        for (const tinygltf::AnimationChannel& channel : animation.channels) {
+            if (!holds_index(nodes_, channel.target_node) || !holds_index(animation.samplers, channel.sampler)) continue;
+            const auto node = static_cast<std::size_t>(channel.target_node);
+            const int values = animation.samplers[static_cast<std::size_t>(channel.sampler)].output;
+            if (!drawn_[node] || !holds_index(model_.accessors, values)) continue;
+            if (channel.target_path == "translation" || channel.target_path == "rotation") {
+                first[node] = std::min(first[node], a);
+                if (first[node] != a) continue;
+            } else if (channel.target_path != "scale") {
+                continue;
+            }
+            const std::size_t count = model_.accessors[static_cast<std::size_t>(values)].count;
+            if (count <= 3 * max_keys_of_motion) keys_ += count;
+        }
     }
 }
 
@@ -267,9 +300,12 @@ Index AnimationReader::motion_of(int node, const NodePose& rest, const dmat4& pa
     const std::uint32_t depth = outer == none ? 1 : depths_[outer - first_motion_] + 1;
     if (depth > model::max_motion_depth)
         return refuse(node, Flaw::depth, fmt::format("more than {} motions carry each other", model::max_motion_depth)), outer;
-    std::vector<model::MotionKey> keys = keys_of(tracks, extent.back, max_keys_of_motion);
-    if (keys.empty() || scene_.motions.size() >= model::max_motions ||
-        scene_.motion_keys.size() + keys.size() > model::max_motion_keys)
+    const std::size_t room = scene_.motions.size() < model::max_motions && scene_.motion_keys.size() < model::max_motion_keys
+                                 ? model::max_motion_keys - scene_.motion_keys.size()
+                                 : 0;
+    std::vector<model::MotionKey> keys;
+    if (room > 0) keys = keys_of(tracks, extent.back, std::min(max_keys_of_motion, room));
+    if (keys.empty())
         return refuse(node, Flaw::keys, "there are too many motions, or it has too many keys"), outer;
     model::Motion motion;
     motion.pivot = dvec3(parent * dvec4(rest.translation, 1.0));

@@ -122,6 +122,8 @@ struct AnimatedNode {
 class AnimationReader {
 public:
     AnimationReader(const tinygltf::Model& model, const std::string& file, Scene& scene);
+    /// Error "out of limits": all tracks together have too many keys. Then none of them was read.
+    [[nodiscard]] Result<void> within_limits() const;
     /// Adds the node's own motion to the scene, carried by that of its parent. Returns what moves the node: `outer` if it has
     /// none of its own. `parent`: its parent's frame to world, at rest.
     Index motion_of(int node, const NodePose& rest, const dmat4& parent, Index outer);
@@ -165,6 +167,7 @@ private:
     [[nodiscard]] std::string name_of_node(int node) const;
     [[nodiscard]] std::string name_of_animation(int animation) const;
     void find_drawn();
+    void count_keys();
     void read_animation(int animation);
     void read_channel(int animation, const tinygltf::AnimationChannel& channel);
     void refuse(int node, Flaw flaw, const std::string& why);
@@ -179,7 +182,9 @@ private:
     const std::string& file_;
     Scene& scene_;
     std::vector<AnimatedNode> nodes_;
+    std::vector<int> parents_;           ///< by node; -1: none
     std::vector<bool> drawn_, refused_;  ///< by node: something at or below it is drawn; it stands still
+    std::uint64_t keys_ = 0;             ///< of all tracks
     std::vector<Extent> extents_;        ///< by animation
     std::vector<std::uint32_t> depths_;  ///< by motion of the scene
     std::size_t first_motion_ = 0;

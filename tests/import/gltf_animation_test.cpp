@@ -381,6 +381,37 @@ TEST(GltfAnimation, ManyOfAKindAreOneWarning) {
                        "Node 'a' is drawn at rest: its animation changes its scale; 2 others are like it");
 }
 
+/// As many nodes, all with one sampler of as many keys.
+AnimatedGltf one_track_of_many(int nodes, std::size_t keys) {
+    AnimatedGltf file;
+    std::string names, all;
+    for (int n = 0; n < nodes; ++n) {
+        names += (n == 0 ? "[" : ",") + std::string(R"({"mesh":0})");
+        all += (n == 0 ? "" : ",") + std::string(R"({"sampler":0,"target":{"node":)") + std::to_string(n) +
+               R"(,"path":"translation"}})";
+    }
+    file.gltf.nodes = names + "]";
+    std::vector<float> times(keys), values(3 * keys, 0.0F);
+    for (std::size_t k = 0; k < keys; ++k) times[k] = static_cast<float>(k);
+    values[3] = 1;
+    file.channel(0, "translation", times, values);
+    file.channels = all;
+    file.end("all of them");
+    file.gltf.more = R"(,"animations":[)" + file.animations + "]";
+    return file;
+}
+
+TEST(GltfAnimation, ALongTrackOfVeryManyNodesIsRefusedWithTheirTotal) {
+    // A file of 8 MB, whose tracks would be 4 GB.
+    const auto refused = test::import_bytes(one_track_of_many(100'000, 1000).gltf.file());
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().kind, ErrorKind::out_of_limits);
+    EXPECT_NE(refused.error().place.find("model.glb"), std::string::npos) << refused.error().place;
+    EXPECT_EQ(refused.error().what, "Its animations have 100000000 keys, and a file may have 8388608");
+    EXPECT_EQ(refused.error().remedy, "Export it with fewer keys a second, or with fewer animated nodes");
+    EXPECT_TRUE(test::import_bytes(one_track_of_many(100, 1000).gltf.file()).ok());
+}
+
 TEST(GltfAnimation, ASceneThatIsAppendedKeepsItsMotions) {
     const auto make = [](float height) {
         return AnimatedGltf().channel(0, "translation", {0, 1, 2}, {0, 0, 0, 0, height, 0, 0, 0, 0}).end("rise").read();
