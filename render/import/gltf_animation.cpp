@@ -46,6 +46,7 @@ AnimationReader::AnimationReader(const tinygltf::Model& model, const std::string
     find_drawn();
     count_keys();
     if (keys_ > max_keys_of_file) return;
+    find_worlds();
     for (int a = 0; a < static_cast<int>(model.animations.size()); ++a) read_animation(a);
 }
 
@@ -64,9 +65,48 @@ void AnimationReader::warn() {
     for (Flawed& flaw : flaws_) {
         if (flaw.count == 2) flaw.first += "; 1 other is like it";
         if (flaw.count > 2) flaw.first += fmt::format("; {} others are like it", flaw.count - 1);
-        if (flaw.count > 0) scene_.warnings.push_back(std::move(flaw.first));
+        const auto kind = static_cast<Flaw>(&flaw - flaws_.data());
+        if (flaw.count > 0) scene_.warnings.push_back(fmt::format("{}. {}", flaw.first, remedy_of(kind)));
         flaw = {};
     }
+}
+
+const char* AnimationReader::remedy_of(Flaw flaw) {
+    switch (flaw) {
+        case Flaw::empty:
+            return "Remove it, or give it keys";
+        case Flaw::order:
+            return "Sort the keys by time";
+        case Flaw::number:
+            return "Correct that number in the modelling program";
+        case Flaw::quaternion:
+            return "Normalize the rotations before the export";
+        case Flaw::duration:
+            return "Let it last from 0.001 to 500 000 s";
+        case Flaw::scale:
+            return "Take that animation out, or let a translation or rotation show the same";
+        case Flaw::weights:
+        case Flaw::kind:
+        case Flaw::skin:
+            return "Animate translations and rotations of nodes alone";
+        case Flaw::matrix:
+            return "Export the node's translation, rotation and scale in place of the matrix";
+        case Flaw::taken:
+            return "Join the animations of a node into one";
+        case Flaw::shear:
+            return "Apply the scale of the nodes above it";
+        case Flaw::keys:
+            return "Export fewer keys a second";
+        case Flaw::depth:
+            return "Let fewer animated nodes stand below each other";
+        case Flaw::no_loop:
+            return "End it as it begins, if it is to go round";
+        case Flaw::broken:
+        case Flaw::length:
+        case Flaw::count:
+            break;
+    }
+    return export_again;
 }
 
 std::string AnimationReader::name_of_node(int node) const {
@@ -95,6 +135,26 @@ void AnimationReader::find_drawn() {
     }
 }
 
+/// Frames of all nodes to the world, at rest. Cycles are refused later.
+void AnimationReader::find_worlds() {
+    worlds_.assign(nodes_.size(), dmat4(1.0));
+    std::vector<bool> found(nodes_.size(), false);
+    std::vector<std::size_t> way;  // upwards to what is known
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+        for (int at = static_cast<int>(n); at >= 0 && !found[static_cast<std::size_t>(at)];
+             at = parents_[static_cast<std::size_t>(at)]) {
+            way.push_back(static_cast<std::size_t>(at));
+            found[way.back()] = true;
+        }
+        for (; !way.empty(); way.pop_back())
+            worlds_[way.back()] = parent_world(way.back()) * local_matrix(model_.nodes[way.back()]);
+    }
+}
+
+dmat4 AnimationReader::parent_world(std::size_t node) const {
+    return parents_[node] < 0 ? dmat4(1.0) : worlds_[static_cast<std::size_t>(parents_[node])];
+}
+
 /// All that is read below, before any of it is: a small file may have one long track at many nodes.
 void AnimationReader::count_keys() {
     std::vector<std::size_t> first(nodes_.size(), model_.animations.size());  // the animation that moves a node
@@ -121,6 +181,7 @@ void AnimationReader::read_animation(int animation) {
     const tinygltf::Animation& from = model_.animations[static_cast<std::size_t>(animation)];
     if (from.channels.empty())
         flawed(Flaw::empty, fmt::format("Animation '{}' is ignored: it has no channels", name_of_animation(animation)));
+    moved_.clear();
     for (const tinygltf::AnimationChannel& channel : from.channels) read_channel(animation, channel);
     measure(animation);
 }
@@ -159,6 +220,7 @@ void AnimationReader::read_channel(int animation, const tinygltf::AnimationChann
     Track read;
     if (!read_track(animation, channel, rotation, read)) return;
     track = std::move(read);
+    if (animated.animation < 0) moved_.push_back(node);
     animated.animation = animation;
 }
 
@@ -256,8 +318,10 @@ bool AnimationReader::scale_stays(int animation, const tinygltf::AnimationChanne
 /// so that they stay in step.
 void AnimationReader::measure(int animation) {
     Extent& extent = extents_[static_cast<std::size_t>(animation)];
-    for (std::size_t n = 0; n < nodes_.size(); ++n) {
-        if (nodes_[n].animation != animation || refused_[n]) continue;
+    std::sort(moved_.begin(), moved_.end());  // flaws name the first node of the file
+    for (const int node : moved_) {
+        const auto n = static_cast<std::size_t>(node);
+        if (refused_[n]) continue;
         for (const Track* track : {&nodes_[n].translation, &nodes_[n].rotation}) {
             if (track->empty()) continue;
             extent.from_s = extent.known ? std::min(extent.from_s, track->times.front()) : track->times.front();
@@ -272,13 +336,13 @@ void AnimationReader::measure(int animation) {
         extent.known = false;
         return;
     }
-    for (std::size_t n = 0; n < nodes_.size() && !extent.back; ++n) {
-        if (nodes_[n].animation != animation || refused_[n]) continue;
-        const NodeTracks tracks = tracks_of(static_cast<int>(n), {}, dmat4(1.0));
-        if (loops(tracks)) continue;
+    for (const int node : moved_) {
+        const auto n = static_cast<std::size_t>(node);
+        if (extent.back) break;
+        if (refused_[n] || loops(tracks_of(node, {}, parent_world(n)))) continue;
         extent.back = true;
         flawed(Flaw::no_loop, fmt::format("Animation '{}' does not end where it began (node '{}'); it is played forth and back",
-                                          name_of_animation(animation), name_of_node(static_cast<int>(n))));
+                                          name_of_animation(animation), name_of_node(node)));
     }
 }
 
@@ -305,8 +369,7 @@ Index AnimationReader::motion_of(int node, const NodePose& rest, const dmat4& pa
                                  : 0;
     std::vector<model::MotionKey> keys;
     if (room > 0) keys = keys_of(tracks, extent.back, std::min(max_keys_of_motion, room));
-    if (keys.empty())
-        return refuse(node, Flaw::keys, "there are too many motions, or it has too many keys"), outer;
+    if (keys.empty()) return refuse(node, Flaw::keys, "there are too many motions, or it has too many keys"), outer;
     model::Motion motion;
     motion.pivot = dvec3(parent * dvec4(rest.translation, 1.0));
     for (const model::MotionKey& key : keys)

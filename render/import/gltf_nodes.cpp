@@ -26,6 +26,8 @@ dquat unit(double x, double y, double z, double w) {
     return std::isfinite(length) && length > 1e-12 ? q / length : dquat(1, 0, 0, 0);
 }
 
+}  // namespace
+
 dmat4 local_matrix(const tinygltf::Node& node) {
     dmat4 m(1.0);
     if (node.matrix.size() == 16) {
@@ -38,6 +40,8 @@ dmat4 local_matrix(const tinygltf::Node& node) {
     const auto& q = node.rotation;
     return compose(t, q.size() == 4 ? unit(q[0], q[1], q[2], q[3]) : dquat(1, 0, 0, 0), s);
 }
+
+namespace {
 
 NodePose rest_pose(const tinygltf::Node& node) {
     const auto& t = node.translation;

@@ -164,9 +164,12 @@ private:
     };
 
     void flawed(Flaw flaw, std::string text);
+    /// What the user can do: a whole sentence, without its full stop.
+    static const char* remedy_of(Flaw flaw);
     [[nodiscard]] std::string name_of_node(int node) const;
     [[nodiscard]] std::string name_of_animation(int animation) const;
     void find_drawn();
+    void find_worlds();
     void count_keys();
     void read_animation(int animation);
     void read_channel(int animation, const tinygltf::AnimationChannel& channel);
@@ -176,6 +179,7 @@ private:
     bool check_values(int node, bool rotation, Track& track);
     [[nodiscard]] bool scale_stays(int animation, const tinygltf::AnimationChannel& channel);
     void measure(int animation);
+    [[nodiscard]] dmat4 parent_world(std::size_t node) const;
     [[nodiscard]] NodeTracks tracks_of(int node, const NodePose& rest, const dmat4& parent) const;
 
     const tinygltf::Model& model_;
@@ -183,7 +187,9 @@ private:
     Scene& scene_;
     std::vector<AnimatedNode> nodes_;
     std::vector<int> parents_;           ///< by node; -1: none
+    std::vector<dmat4> worlds_;          ///< by node
     std::vector<bool> drawn_, refused_;  ///< by node: something at or below it is drawn; it stands still
+    std::vector<int> moved_;             ///< nodes of the animation that is read
     std::uint64_t keys_ = 0;             ///< of all tracks
     std::vector<Extent> extents_;        ///< by animation
     std::vector<std::uint32_t> depths_;  ///< by motion of the scene
@@ -192,6 +198,9 @@ private:
 };
 
 // ---- the node graph to a Scene's nodes: world matrices in double, instances, cycles refused ----
+
+/// The node's frame to its parent's, at rest.
+dmat4 local_matrix(const tinygltf::Node& node);
 
 /// Reads the default scene, else the first, else every root; then the stand-ins, whose nodes are not drawn by themselves. Error:
 /// a cycle, by node name. Warnings: deviations from the file.

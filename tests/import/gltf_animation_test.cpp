@@ -1,11 +1,14 @@
 // Animations of glTF nodes: what comes in moves as the file says, and what cannot be moved rigidly is named and stands still.
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "tests/import/fixtures.hpp"
 
@@ -213,6 +216,25 @@ TEST(GltfAnimation, OneThatDoesNotLoopIsPlayedForthAndBackWithAllThatItMoves) {
     expect_near(point_at(scene, 1, {}, 3), {0, 1, 0});
 }
 
+/// The period of a node whose way of 2 s ends `off` units from where it began, below parents of that scale together.
+double period_below(double scale, float off) {
+    AnimatedGltf file;
+    file.gltf.nodes = R"([{"name":"top","children":[1],"scale":[2,2,2]},{"name":"parent","children":[2],"scale":[)" +
+                      fmt::format("{0},{0},{0}", scale / 2) + R"(]},{"mesh":0,"name":"thing"}])";
+    file.channel(2, "translation", {0, 1, 2}, {0, 0, 0, 4, 0, 0, off, 0, 0});
+    const Scene scene = file.end("way").read();
+    EXPECT_EQ(scene.warnings.size(), scene.motions.size() == 1 && scene.motions[0].period_s == 4 ? 1U : 0U);
+    return scene.motions.empty() ? 0 : scene.motions[0].period_s;
+}
+
+TEST(GltfAnimation, ALoopIsJudgedInMetresOfTheWorld) {
+    EXPECT_DOUBLE_EQ(period_below(1, 0.0005F), 2);
+    EXPECT_DOUBLE_EQ(period_below(1, 0.002F), 4);
+    EXPECT_DOUBLE_EQ(period_below(0.01, 0.05F), 2) << "half a millimetre in a file of centimetres";
+    EXPECT_DOUBLE_EQ(period_below(0.01, 0.2F), 4);
+    EXPECT_DOUBLE_EQ(period_below(100, 0.0005F), 4) << "it would jump by 5 cm";
+}
+
 TEST(GltfAnimation, WhatStaysAtRestHasNoMotion) {
     AnimatedGltf file;
     file.gltf.nodes = R"([{"mesh":0,"name":"post","translation":[1,2,3],"scale":[2,2,2]}])";
@@ -243,6 +265,12 @@ struct Refused {
     const char* nodes = R"([{"mesh":0,"name":"bad"},{"mesh":0,"name":"good"}])";
 };
 
+/// A warning's last sentence says what to do: it begins with a capital after a full stop.
+bool ends_with_a_remedy(const std::string& warning) {
+    const std::size_t stop = warning.rfind(". ");
+    return stop != std::string::npos && stop + 12 < warning.size() && std::isupper(warning[stop + 2]) != 0;
+}
+
 class RefusedAnimation : public testing::TestWithParam<Refused> {};
 
 TEST_P(RefusedAnimation, IsNamedAndTheNodeStandsStill) {
@@ -254,6 +282,7 @@ TEST_P(RefusedAnimation, IsNamedAndTheNodeStandsStill) {
     const Scene scene = file.channel(1, "translation", {0, 1, 2}, {0, 0, 0, 1, 0, 0, 0, 0, 0}).end("good one").read();
     ASSERT_GE(scene.nodes.size(), 2U);
     expect_one_warning(scene, GetParam().warning);
+    for (const std::string& warning : scene.warnings) EXPECT_TRUE(ends_with_a_remedy(warning)) << warning;
     EXPECT_TRUE(scene.damage.empty());
     for (const Node& node : scene.nodes) EXPECT_EQ(node.motion == none, node.name != "good") << node.name;
     EXPECT_EQ(scene.motions.size(), 1U);
