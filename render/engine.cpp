@@ -66,6 +66,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->unprepared.reserve(impl->model);
     impl->moving = model::MovingNodes(impl->model);
     impl->restless = restless_nodes(impl->model, impl->moving);
+    impl->poses = model::MotionPoses(impl->model);
     const std::size_t max_drawn = std::max<std::size_t>(candidates * 2, impl->unprepared.capacity());
     impl->drawn.reserve(max_drawn);
     impl->culled.reserve(candidates);
@@ -308,7 +309,7 @@ void Engine::set_time(double time_s) {
     e.draws.plays();
     if (e.restless.empty()) return;
     e.device->draws.plays();
-    e.moving.set_span(time_s, time_s);
+    e.poses.set_time(time_s);
     e.device->set_time(time_s);
 }
 

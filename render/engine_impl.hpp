@@ -60,8 +60,9 @@ struct Engine::Impl {
     double forecast_us GUARDED_BY(draws) = 0;      ///< end of this frame, by the last check that let a slice be drawn in full
     float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from
 
-    model::MovingNodes moving GUARDED_BY(draws);  ///< at the time of the next picture
-    std::vector<model::Index> restless;           ///< nodes whose pictures change with the time; not those below them
+    model::MovingNodes moving GUARDED_BY(draws);
+    model::MotionPoses poses GUARDED_BY(draws);  ///< at the time of the next picture
+    std::vector<model::Index> restless;          ///< nodes whose pictures change with the time; not those below them
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
@@ -137,7 +138,7 @@ struct Engine::Impl {
     void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
     void submit_last(const Pose& pose, const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
     void push(const UnpreparedItem& item, SubmitReport& report) REQUIRES(draws);
-    [[nodiscard]] bool in_view(model::Index node) const REQUIRES(draws);
+    [[nodiscard]] bool in_view(model::Index node) REQUIRES(draws);
     [[nodiscard]] bool motion_in_view(const Pose& pose) const REQUIRES(draws);
 };
 

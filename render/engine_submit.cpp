@@ -31,8 +31,8 @@ rt::Guarantee Engine::Impl::guarantee_of(const SubmitReport& report) const {
     return cut.guarantee > rt::Guarantee::kept ? cut.guarantee : rt::Guarantee::stand_ins;
 }
 
-bool Engine::Impl::in_view(model::Index node) const {
-    return model::visible(frustum, moving.any() ? moving.box(node) : model.nodes[node].box);
+bool Engine::Impl::in_view(model::Index node) {
+    return model::visible(frustum, moving.any() ? moving.box(node, poses) : model.nodes[node].box);
 }
 
 /// Whether anything moves, now or later, that the pose may see.

@@ -129,7 +129,7 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     set_filter_ = filter();
     detail_step_ = 0;
     light_ = model::daylight_of_model(model.sun_direction, model.light);
-    moving_model_ = &model;
+    poses_ = model::MotionPoses(model);
     time_s_ = 0;
     warm_up();
     if (lost_)

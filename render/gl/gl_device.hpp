@@ -15,6 +15,7 @@
 #include "render/gl/sample_targets.hpp"
 #include "render/gl/targets.hpp"
 #include "render/gl/window_fit.hpp"
+#include "render/model/moving.hpp"
 
 namespace surefoot::gl {
 
@@ -122,7 +123,7 @@ private:
     void apply(const State& state) REQUIRES(draws);
     void set_blending(bool on) REQUIRES(draws);
     void write_instance(const Pending& pending, std::uint32_t at) REQUIRES(draws);
-    [[nodiscard]] draw::Placed placed_now(std::uint32_t placement) const REQUIRES(draws);
+    [[nodiscard]] draw::Placed placed_now(std::uint32_t placement) REQUIRES(draws);
     void append_command(const Pending& pending, std::uint32_t at, std::uint32_t first_of_batch) REQUIRES(draws);
 
     std::unique_ptr<Context> context_;
@@ -152,10 +153,10 @@ private:
 
     Pose pose_ GUARDED_BY(draws);
     mat4 view_projection_ GUARDED_BY(draws){1.0F};
-    model::Daylight light_ GUARDED_BY(draws);                       ///< of the next picture
-    const model::Model* moving_model_ GUARDED_BY(draws) = nullptr;  ///< whose placements may move
-    double time_s_ GUARDED_BY(draws) = 0;                           ///< of the next picture
-    PictureMoment shown_ GUARDED_BY(draws);                         ///< of this picture
+    model::Daylight light_ GUARDED_BY(draws);     ///< of the next picture
+    double time_s_ GUARDED_BY(draws) = 0;         ///< of the next picture
+    PictureMoment shown_ GUARDED_BY(draws);       ///< of this picture
+    model::MotionPoses poses_ GUARDED_BY(draws);  ///< of this picture
     std::uint64_t frame_number_ GUARDED_BY(draws) = 0;
     FrameStats stats_ GUARDED_BY(draws);
     std::vector<Pending> pending_ GUARDED_BY(draws), blended_ GUARDED_BY(draws);

@@ -68,6 +68,7 @@ void GlDevice::start_picture(const Pose& pose) {
     state_known_ = false;
     shown_ = {light_, time_s_, pose.position, static_cast<float>(model::pixel_angle(pose, options_.viewport))};
     shown_.light.background *= vec3(options_.sky[0], options_.sky[1], options_.sky[2]);
+    poses_.set_time(time_s_);
 }
 
 void GlDevice::draw_into(const Target& target) {
@@ -191,9 +192,9 @@ void GlDevice::submit(std::span<Pending> sorted) {
 }
 
 /// A moving placement at the time of the picture.
-draw::Placed GlDevice::placed_now(std::uint32_t placement) const {
+draw::Placed GlDevice::placed_now(std::uint32_t placement) {
     const draw::Placed& placed = tables_.placements[placement];
-    return draw::moved(placed, model::pose_at(*moving_model_, tables_.motions[placement], shown_.time_s));
+    return draw::moved(placed, poses_.at(tables_.motions[placement]));
 }
 
 void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {

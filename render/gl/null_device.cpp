@@ -90,7 +90,7 @@ public:
 
 private:
     void charge() REQUIRES(draws);
-    [[nodiscard]] model::ItemCost cost_of(const DrawItem& item) const REQUIRES(draws);
+    [[nodiscard]] model::ItemCost cost_of(const DrawItem& item) REQUIRES(draws);
     /// The picture at rest has no fixed costs of a frame: its passes are charged one by one.
     void charge_pass() REQUIRES(draws) { before_us_ += null_.cost_scale * factor_ * null_.rest_pass_us; }
 
@@ -108,6 +108,7 @@ private:
     const model::Model* model_ = nullptr;
     std::optional<model::ItemCosts> item_costs_;
     model::MovingNodes moving_ GUARDED_BY(draws);
+    model::MotionPoses poses_ GUARDED_BY(draws);  ///< of this picture
     double time_s_ GUARDED_BY(draws) = 0;
     model::EffectMask hidden_ GUARDED_BY(draws) = 0;
     dvec3 eye_{0.0};
@@ -126,6 +127,7 @@ Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& p
     model_ = &model;
     item_costs_.emplace(model, costs_);
     moving_ = model::MovingNodes(model);
+    poses_ = model::MotionPoses(model);
     time_s_ = 0;
     return {};
 }
@@ -146,7 +148,7 @@ std::string NullDevice::program_text(model::EffectMask mask) const {
 void NullDevice::begin_frame(const Pose& pose, float resolution) {
     before_us_ += frame_us_;
     eye_ = pose.position;
-    moving_.set_span(time_s_, time_s_);
+    poses_.set_time(time_s_);
     stats_ = {};
     stats_.resolution = model::resolution_steps[model::resolution_step(resolution)];
     stats_.samples = samples();
@@ -160,9 +162,9 @@ void NullDevice::begin_frame(const Pose& pose, float resolution) {
     charge();
 }
 
-model::ItemCost NullDevice::cost_of(const DrawItem& item) const {
+model::ItemCost NullDevice::cost_of(const DrawItem& item) {
     float pixels = 0;
-    if (const auto moving = moving_.find(item.node))
+    if (const auto moving = moving_.find(item.node, poses_))
         return item_costs_->of(item.rep, moving->rest, moving->pose.back(eye_), model::turned_back(scale_, moving->pose), pixels,
                                hidden_);
     return item_costs_->of(item.rep, model_->nodes[item.node].box, eye_, scale_, pixels, hidden_);

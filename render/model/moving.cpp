@@ -43,6 +43,21 @@ Box MovingNode::box() const {
     return {centre - reach, centre + reach};
 }
 
+MotionPoses::MotionPoses(const Model& model) : model_(&model), poses_(model.motions.size()), worked_(model.motions.size(), 0) {}
+
+void MotionPoses::set_time(double time_s) {
+    time_s_ = time_s;
+    ++moment_;
+}
+
+const RigidPose& MotionPoses::at(Index motion) {
+    if (worked_[motion] != moment_) {
+        poses_[motion] = pose_at(*model_, motion, time_s_);
+        worked_[motion] = moment_;
+    }
+    return poses_[motion];
+}
+
 MovingNodes::MovingNodes(const Model& model) : model_(&model) {
     if (model.motions.empty()) return;
     slot_of_node_.assign(model.nodes.size(), none);
@@ -78,15 +93,23 @@ void MovingNodes::set_span(double from_s, double to_s) {
     to_s_ = std::isfinite(to_s) ? std::max(to_s, from_s_) : from_s_;
 }
 
+/// But for its speed.
+MovingNode MovingNodes::placed(Index index) const {
+    const Slot& slot = slots_[slot_of_node_[index]];
+    const double half_s = 0.5 * (to_s_ - from_s_);
+    MovingNode node;
+    node.rest = slot.rest;
+    node.pose = pose_at(*model_, slot.motion, from_s_ + half_s);
+    node.drift_m = slot.max_speed_mps * half_s * (1 + 1e-9);
+    node.everywhere = slot.jumps && half_s > 0;
+    return node;
+}
+
 std::optional<MovingNode> MovingNodes::find(Index index) const {
     if (slot_of_node_.empty() || slot_of_node_[index] == none) return {};
     const Slot& slot = slots_[slot_of_node_[index]];
-    MovingNode node;
-    node.rest = slot.rest;
+    MovingNode node = placed(index);
     const double half_s = 0.5 * (to_s_ - from_s_), middle_s = from_s_ + half_s;
-    node.pose = pose_at(*model_, slot.motion, middle_s);
-    node.drift_m = slot.max_speed_mps * half_s * (1 + 1e-9);
-    node.everywhere = slot.jumps && half_s > 0;
     const double around_s = std::max(half_s, 0.005);  // a moment has a speed as well
     const RigidPose before = pose_at(*model_, slot.motion, middle_s - around_s);
     const RigidPose after = pose_at(*model_, slot.motion, middle_s + around_s);
@@ -100,8 +123,24 @@ std::optional<MovingNode> MovingNodes::find(Index index) const {
 }
 
 Box MovingNodes::box(Index node) const {
-    const std::optional<MovingNode> moving = find(node);
-    return !moving || moving->everywhere ? model_->nodes[node].box : moving->box();
+    const Box& always = model_->nodes[node].box;
+    if (slot_of_node_.empty() || slot_of_node_[node] == none) return always;
+    const MovingNode moving = placed(node);
+    return moving.everywhere ? always : moving.box();
+}
+
+std::optional<MovingNode> MovingNodes::find(Index node, MotionPoses& now) const {
+    if (slot_of_node_.empty() || slot_of_node_[node] == none) return {};
+    const Slot& slot = slots_[slot_of_node_[node]];
+    MovingNode moving;
+    moving.rest = slot.rest;
+    moving.pose = now.at(slot.motion);
+    return moving;
+}
+
+Box MovingNodes::box(Index node, MotionPoses& now) const {
+    const std::optional<MovingNode> moving = find(node, now);
+    return moving ? moving->box() : model_->nodes[node].box;
 }
 
 ViewScale turned_back(const ViewScale& scale, const RigidPose& pose) {

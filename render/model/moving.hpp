@@ -1,6 +1,7 @@
 // Where the moving nodes of a model are at a time: their boxes, and views of them as if they stood at rest.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,26 @@ struct MovingNode {
     [[nodiscard]] Box box() const;
 };
 
+/// The poses of all motions at one time, for one thread: each is worked out once, at its first use. After it is made, nothing
+/// allocates.
+class MotionPoses {
+public:
+    MotionPoses() = default;
+    /// The model must outlive it.
+    explicit MotionPoses(const Model& model);
+    /// Takes the same time whatever moves.
+    void set_time(double time_s);
+    /// pose_at() of a motion, bit for bit; not of none.
+    [[nodiscard]] const RigidPose& at(Index motion);
+
+private:
+    const Model* model_ = nullptr;
+    double time_s_ = 0;
+    std::uint64_t moment_ = 1;           // grows with each time
+    std::vector<RigidPose> poses_;       // by motion
+    std::vector<std::uint64_t> worked_;  // moment of each pose
+};
+
 /// The moving nodes. After it is made, nothing allocates. Empty and free of cost where all stands still. Any thread may ask,
 /// while none sets the span.
 class MovingNodes {
@@ -35,10 +56,14 @@ public:
     [[nodiscard]] std::optional<MovingNode> find(Index node) const;
     /// Contains the node within the span; Node::box where it stands still.
     [[nodiscard]] Box box(Index node) const;
+    /// At the time of the poses, whatever the span: no drift, and no speed is worked out.
+    [[nodiscard]] std::optional<MovingNode> find(Index node, MotionPoses& now) const;
+    [[nodiscard]] Box box(Index node, MotionPoses& now) const;
     /// All nodes that move though their parents do not.
     [[nodiscard]] const std::vector<Index>& roots() const { return roots_; }
 
 private:
+    [[nodiscard]] MovingNode placed(Index node) const;
     /// A node that moves, and its limits over all times.
     struct Slot {
         Box rest;

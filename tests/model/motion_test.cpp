@@ -182,6 +182,46 @@ TEST(MovingNodes, HoldTheNodeWithinASpan) {
     EXPECT_GT(bounded, 150) << "of the others the box over all times holds";
 }
 
+TEST(MotionPoses, AreThoseOfTheirTimeBitForBitHoweverOftenAndInWhateverOrder) {
+    Random random(12);
+    Model m;
+    Index outer = none;
+    for (int i = 0; i < 40; ++i) outer = add_motion(m, random, i % 3 == 0 ? none : outer, i % 5 == 0);
+    MotionPoses poses(m);
+    const auto expect_same = [&](Index motion, double time_s) {
+        const RigidPose &is = poses.at(motion), should = pose_at(m, motion, time_s);
+        ASSERT_TRUE(is.pivot == should.pivot && is.translation == should.translation && is.rotation == should.rotation)
+            << "motion " << motion << " at " << time_s;
+    };
+    for (Index motion = 0; motion < m.motions.size(); ++motion) expect_same(motion, 0);
+    for (int i = 0; i < 300; ++i) {
+        const double time_s = i % 7 == 0 ? 3.5 : within(random, -20, 20);
+        poses.set_time(time_s);
+        for (int k = 0; k < 30; ++k)
+            expect_same(static_cast<Index>(random.below(static_cast<std::uint32_t>(m.motions.size()))), time_s);
+    }
+}
+
+TEST(MovingNodes, AreWhereTheirPosesAre) {
+    Random random(13);
+    Model motions;
+    add_motion(motions, random, none, false);
+    const Model m = one_that_moves(motions);
+    MovingNodes nodes(m);
+    MotionPoses poses(m);
+    for (int i = 0; i < 50; ++i) {
+        const double time_s = within(random, 0, 20);
+        nodes.set_span(time_s, time_s);
+        poses.set_time(time_s);
+        const Box by_span = nodes.box(2), by_poses = nodes.box(2, poses);
+        EXPECT_TRUE(by_span.min == by_poses.min && by_span.max == by_poses.max);
+        ASSERT_TRUE(nodes.find(2, poses));
+        EXPECT_EQ(nodes.find(2, poses)->pose.translation, nodes.find(2)->pose.translation);
+    }
+    EXPECT_FALSE(nodes.find(1, poses));
+    EXPECT_EQ(nodes.box(1, poses).min, m.nodes[1].box.min);
+}
+
 TEST(MovingNodes, AreNoneWhereAllStandsStill) {
     const Model m = two_triangles();
     const MovingNodes nodes(m);
