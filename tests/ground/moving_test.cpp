@@ -31,7 +31,30 @@ MovingThing sliding_door() {
     return door;
 }
 
+/// Thin walls every 0.4 m, from -5 to 5 m: nobody is free between them. Outside of them are moving blocks, but for a strip beyond
+/// x = 7.5 m.
+MovingScene crowded_hall() {
+    MovingScene scene = open_hall();
+    for (int i = -12; i <= 12; ++i) add_wall(scene.still, {0.4 * i, -5}, {0.4 * i, 5}, 0, 4);
+    const auto block = [&](const dvec3& min, const dvec3& max) { scene.things.push_back(platform(min, max, {0, 0.05, 0}, 1)); };
+    block({-20, -0.3, 5}, {20, 4, 20});
+    block({-20, -0.3, -20}, {20, 4, -5});
+    block({-20, -0.3, -5}, {-5, 4, 5});
+    block({5, -0.3, -5}, {7.5, 4, 5});
+    return scene;
+}
+
 }  // namespace
+
+TEST(Moving, WhoIsPutBesideWhatHeStoodInComesToNoPlaceWhereSomethingMoves) {
+    const MovingScene scene = crowded_hall();
+    Rider rider(scene, {0.1, 1.7, 0.3});
+    rider.push({0.5, 0, 0}, 2);
+    ASSERT_EQ(rider.walker.freed(), 1U);
+    EXPECT_GT(rider.walker.feet().x, 7.8) << "all other places are inside of a moving block";
+    EXPECT_LT(std::abs(rider.walker.feet().z), 5);
+    EXPECT_EQ(rider.walker.passed_through(), 0U);
+}
 
 TEST(Moving, ALiftCarriesUpAndDownAndTheEyeKeepsItsHeight) {
     MovingScene scene = open_hall();

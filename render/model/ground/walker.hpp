@@ -150,6 +150,8 @@ private:
     void raise_eye(double sank_m_s, double dt_s);
     void stand_up();
     [[nodiscard]] bool push_out();
+    void gather_moving_there(const dvec3& feet);
+    [[nodiscard]] bool is_left_free(const dvec3& feet);
     [[nodiscard]] bool sees(const dvec3& to) const;
     void look_for_a_free_place();
     void stand_at(const dvec3& feet);

@@ -114,11 +114,33 @@ void Walker::look_for_a_free_place() {
         const bool picky = search_at_ < search_rings * trials;
         const dvec3 at = eye_ + ring * ring_m * walker_parts::direction((of_pass % trials) / static_cast<double>(trials));
         const double top = picky ? feet_.y + body_.step_m : eye_.y;
+        gather_moving_there(at - dvec3(0, body_.eye_m, 0));
         const dvec3 feet{at.x, footing(at, top, eye_.y - body_.eye_m - 1.0).floor, at.z};
-        if (!std::isfinite(feet.y) || !is_free(feet) || is_inside_solid(feet, place_sight_m)) continue;
+        if (!std::isfinite(feet.y) || !is_free(feet) || is_inside_solid(feet, place_sight_m) || is_in_any(feet)) continue;
         if (picky && !sees(feet + dvec3(0, body_.eye_m, 0))) continue;
         free_at(feet);
     }
+}
+
+/// What moves is known around the feet alone: now around a place where they may go.
+void Walker::gather_moving_there(const dvec3& feet) {
+    if (!moving_.exist()) return;
+    const double wide_m = body_.radius_m + walker_parts::skin_m;
+    Box box{feet - dvec3(wide_m, below_floor_m, wide_m), feet + dvec3(wide_m, body_.eye_m + crown_m, wide_m)};
+    moving_.gather(box, place_sight_m, time_s_, time_s_);
+}
+
+/// Whether nothing that moves is there now.
+bool Walker::is_left_free(const dvec3& feet) {
+    if (!moving_.exist()) return true;
+    gather_moving_there(feet);
+    Capsule body = capsule_at(feet);
+    body.radius -= walker_parts::max_overlap_m;
+    bool clear = !is_in_any(feet);
+    moving_.for_triangles(walker_parts::swept(body, dvec3(0.0)), [&](const GroundTriangle& t, std::uint32_t) {
+        clear = clear && (min_separation(body, t) >= body.radius || separation(body, t).distance >= body.radius);
+    });
+    return clear;
 }
 
 /// Put beside what it was in: that is where it stood up.
@@ -202,11 +224,12 @@ void Walker::go_back() {
         const std::uint32_t by = std::min(wanted, free_count_ - 1);
         gone_back_ = std::max(by, 1U);
         free_count_ -= by;
+        for (; free_count_ > 1 && !is_left_free(newest_free_place()); --free_count_) ++gone_back_;
         ++returns_;
         stand_at(newest_free_place());
         return;
     }
-    const bool to_start = free_count_ > 0 && start_is_free_;
+    const bool to_start = free_count_ > 0 && start_is_free_ && is_left_free(stood_up_at_);
     free_count_ = gone_back_ = 0;
     if (to_start) {
         ++returns_;
