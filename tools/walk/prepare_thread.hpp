@@ -26,6 +26,7 @@ struct PredictedRegion {
     double speed_m_s = 0, turn_rad_s = 0;
     bool on_foot = false;  ///< a walker stands at `feet` and `eye`, and its velocity leads `way` on: walls clip the region
     dvec3 feet{0.0}, eye{0.0}, way{0.0};
+    double carried_m = 0;  ///< of a walker: how far what moves may carry it until then
 };
 
 /// What the frame thread publishes at each frame's start.

@@ -60,8 +60,9 @@ FramePose SteeredPoses::pose_of(const FrameTime& time) const {
     out.predicted.speed_m_s = glm::length(s.nav.velocity_m_s);
     out.predicted.turn_rad_s = glm::length(s.nav.angular_rad_s);
     out.predicted.on_foot = s.on_foot;
-    if (s.on_foot)
-        out.predicted.feet = s.feet, out.predicted.eye = s.nav.pose.position, out.predicted.way = s.nav.velocity_m_s * ahead_s;
+    if (!s.on_foot) return out;
+    out.predicted.feet = s.feet, out.predicted.eye = s.nav.pose.position, out.predicted.way = s.nav.velocity_m_s * ahead_s;
+    out.predicted.carried_m = (glm::length(s.nav.carried_m_s) + s.nav.max_carried_m_s) * ahead_s;
     return out;
 }
 
