@@ -70,7 +70,7 @@ void collect_points(const model::Model& model, const model::Node& leaf, std::vec
     const model::Representation& rep = model.reps[leaf.first_rep + leaf.rep_count - 1];
     const mat3& linear = model.placements[rep.placement].linear;
     const mat3 to_world = cofactors(linear) * (glm::determinant(linear) < 0.0F ? -1.0F : 1.0F);
-    const std::uint32_t stride = std::max(1U, rep.triangles / points_a_leaf);
+    const std::uint32_t stride = std::max(1U, (rep.triangles + points_a_leaf - 1) / points_a_leaf);
     std::uint32_t triangle = 0;
     for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
         const model::Part& part = model.parts[p];
@@ -89,34 +89,41 @@ void collect_points(const model::Model& model, const model::Node& leaf, std::vec
 
 float mean_square(const vec3& difference) { return glm::dot(difference, difference) / 3.0F; }
 
-/// What a point loses without the group. Fog: what it would lose where nothing of its own colour were left.
-float loss_of(const WorthPoint& point, model::EffectMask own, const model::Daylight& light, const vec3& fog) {
-    const auto shown = [&](model::EffectMask mask) {
-        return glm::clamp(point.colour * effects::light_of(point.at, mask, light), 0.0F, 1.0F);
-    };
-    const vec3 with = shown(point.effects);
-    return effects::hides_by_depth(own) ? mean_square(with - fog) : mean_square(with - shown(point.effects & ~own));
+vec3 colour_shown(const WorthPoint& point, model::EffectMask mask, const model::Daylight& light) {
+    return glm::clamp(point.colour * effects::light_of(point.at, mask, light), 0.0F, 1.0F);
 }
 
-float loss_of_leaf(std::span<const WorthPoint> points, model::EffectMask own, const model::Daylight& light, const vec3& fog) {
-    double sum = 0, areas = 0;
+/// Of a leaf in one light: the mean square of what its points show, and what they lose without each group.
+struct LeafWorth {
+    double energy = 0;
+    std::array<float, prepare::max_effect_groups> losses{};
+};
+
+/// What a point loses without the group. Fog: what it would lose where nothing of its own colour were left.
+float loss_of(const WorthPoint& point, const vec3& with, model::EffectMask own, const model::Daylight& light, const vec3& fog) {
+    if (effects::hides_by_depth(own)) return mean_square(with - fog);
+    return mean_square(with - colour_shown(point, point.effects & ~own, light));
+}
+
+/// What a point shows with all of its effects is worked out once for all groups.
+LeafWorth worth_of_leaf(std::span<const WorthPoint> points, std::span<const EffectGroup> groups, const model::Daylight& light,
+                        const vec3& fog) {
+    LeafWorth worth;
+    double areas = 0;
+    std::array<double, prepare::max_effect_groups> sums{};
     for (const WorthPoint& point : points) {
         const auto area = static_cast<double>(point.area);
+        const vec3 with = colour_shown(point, point.effects, light);
         areas += area;
-        if ((point.effects & own) != 0) sum += area * static_cast<double>(loss_of(point, own, light, fog));
+        worth.energy += area * static_cast<double>(mean_square(with));
+        for (std::size_t g = 0; g < groups.size(); ++g)
+            if ((point.effects & groups[g].own) != 0)
+                sums[g] += area * static_cast<double>(loss_of(point, with, groups[g].own, light, fog));
     }
-    return areas > 0 && std::isfinite(areas) ? static_cast<float>(sum / areas) : 0.0F;
-}
-
-/// Mean square of what the points show.
-double energy_of_leaf(std::span<const WorthPoint> points, const model::Daylight& light) {
-    double sum = 0, areas = 0;
-    for (const WorthPoint& point : points) {
-        const vec3 shown = glm::clamp(point.colour * effects::light_of(point.at, point.effects, light), 0.0F, 1.0F);
-        sum += static_cast<double>(point.area) * static_cast<double>(mean_square(shown));
-        areas += static_cast<double>(point.area);
-    }
-    return areas > 0 && std::isfinite(areas) ? sum / areas : 0;
+    if (!(areas > 0 && std::isfinite(areas))) return {};
+    worth.energy /= areas;
+    for (std::size_t g = 0; g < groups.size(); ++g) worth.losses[g] = static_cast<float>(sums[g] / areas);
+    return worth;
 }
 
 float size_of(const Box& box) {
@@ -174,11 +181,12 @@ EffectWorth::EffectWorth(const model::Model& model, std::span<const EffectGroup>
         if (model.nodes[n].child_count > 0) continue;
         collect_points(model, model.nodes[n], points);
         const auto size = static_cast<double>(size_of(model.nodes[n].box));
-        own_energy += size * energy_of_leaf(points, own);
-        for (std::size_t m = 0; m < moments.size(); ++m) energy[m] += size * energy_of_leaf(points, moments[m]);
+        own_energy += size * worth_of_leaf(points, {}, own, vec3(0.0F)).energy;
         for (std::size_t m = 0; m < moments.size(); ++m) {
             const vec3 fog = vec3(sky[0], sky[1], sky[2]) * moments[m].background;
-            for (std::size_t g = 0; g < groups_.size(); ++g) of(m, g)[n] = loss_of_leaf(points, groups_[g].own, moments[m], fog);
+            const LeafWorth worth = worth_of_leaf(points, groups_, moments[m], fog);
+            energy[m] += size * worth.energy;
+            for (std::size_t g = 0; g < groups_.size(); ++g) of(m, g)[n] = worth.losses[g];
         }
     }
     for (std::size_t m = 0; m < moments.size(); ++m) {

@@ -89,6 +89,35 @@ TEST(EffectWorth, CountsForMoreWhereAllIsDark) {
     EXPECT_GT(loss(0), 3 * loss(1));
 }
 
+/// Of 31 triangles one alone is lit by lamps: what the leaf loses without them.
+float loss_of_lamp_on(std::size_t triangle) {
+    SmallModel small;
+    std::vector<model::Vertex> vertices;
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t i = 0; i < 31 * 3; ++i) {
+        model::Vertex v{};
+        v.position[0] = static_cast<float>(i / 3) + (i % 3 == 1 ? 1.0F : 0.0F);
+        v.position[1] = i % 3 == 2 ? 1.0F : 0.0F;
+        v.normal[2] = 127;
+        vertices.push_back(v);
+        indices.push_back(i);
+    }
+    const auto material = small.material(test::plain(0.5F, 0.5F, 0.5F, 1, effect_sun | effect_lamps));
+    const auto node = small.object(vertices, indices, material, test::at(0, 0, -3));
+    model::Model m = small.finish();
+    m.lamp_light.resize(m.vertices.size());
+    for (std::size_t corner = 0; corner < 3; ++corner) m.lamp_light[3 * triangle + corner] = {{255, 255, 255, 0}, {}};
+    m.light.max_lamp_light = 0.5F;
+    return loss_at(EffectWorth(m, groups_of(std::vector<model::EffectMask>{effect_lamps}), std::vector<double>{0}, sky), 0, node,
+                   0);
+}
+
+TEST(EffectWorth, ShadesSixteenTrianglesOfALeafAtMost) {
+    std::size_t shaded = 0;
+    for (std::size_t triangle = 0; triangle < 31; ++triangle) shaded += loss_of_lamp_on(triangle) > 0 ? 1 : 0;
+    EXPECT_EQ(shaded, 16U);
+}
+
 TEST(EffectWorth, OfShadowsIsWhatTheyTakeFromTheSun) {
     SmallModel small;
     const auto node = small.square(small.material(test::plain(1, 1, 1, 1, effect_sun | effect_shadow)), test::at(0, 0, -3));
