@@ -76,6 +76,8 @@ struct Preparer::Impl {
     std::vector<std::uint32_t> slot_first, slot_count, slot_hidden;
     std::vector<Index> candidate_of;  ///< a visit
     std::vector<std::uint32_t> chunk_choice, chunk_candidate, chunk_count;
+    std::vector<std::uint32_t> chunk_parts;        ///< of a block: tests of Occlusion that it may do, then those that it did
+    std::uint32_t parts_left = 0;                  ///< of this set
     std::vector<Weight> weights;                   ///< a candidate
     PreparedFrame tried;                           ///< of value_at()
     double last_speed_mps = 0, last_turn_rps = 0;  ///< of the last run()
@@ -95,7 +97,8 @@ struct Preparer::Impl {
     void for_chunks(std::uint32_t count, const Body& body);
     [[nodiscard]] const Box& box_of(Index node, Box& now) const;
     NodeVisit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
-    void visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j);
+    void visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j, std::uint32_t& parts);
+    void share_parts(std::uint32_t children);
     void expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end, PreparedFrame& out);
     void close_up_block(const RegionView& view, PreparedFrame& out);
     void drop_false_positives(PreparedFrame& out);
@@ -140,6 +143,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     slot_first.resize(slots.size());
     slot_count.resize(slots.size());
     slot_hidden.resize(slots.size());
+    chunk_parts.resize(slots.size() / parents_a_chunk + 1);
     candidate_of.resize(max_nodes);
     const std::size_t chunks = max_nodes / visits_a_chunk + 2;
     chunk_choice.resize(chunks);
@@ -196,7 +200,8 @@ NodeVisit Preparer::Impl::visit_of(const RegionView& view, Index index, Index pa
     return visit;
 }
 
-void Preparer::Impl::visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j) {
+void Preparer::Impl::visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j,
+                                    std::uint32_t& parts) {
     const NodeVisit& parent = visits[block[j]];
     const model::Node& node = model.nodes[parent.node];
     std::uint32_t at = slot_first[j], hidden = 0;
@@ -205,7 +210,7 @@ void Preparer::Impl::visit_children(const RegionView& view, const model::Frustum
         const Box& box = box_of(child, now);
         const PlaneMask mask = cull_planes(frustum, box, parent.mask);
         if (mask == culled) continue;
-        if (occlusion.hides(box))
+        if (occlusion.hides(box, parts))
             slots[slot_first[j] + node.child_count - ++hidden].node = child;
         else
             slots[at++] = visit_of(view, child, block[j], mask);
@@ -238,6 +243,16 @@ void Preparer::Impl::close_up_block(const RegionView& view, PreparedFrame& out) 
     }
 }
 
+/// What is left of the work on parts of boxes, by the children of each chunk: so it is the same at any number of workers.
+void Preparer::Impl::share_parts(std::uint32_t children) {
+    const auto parents = static_cast<std::uint32_t>(block.size());
+    for (std::uint32_t first = 0; first < parents; first += parents_a_chunk) {
+        const std::uint32_t last = first + parents_a_chunk;
+        const std::uint64_t own = (last < parents ? slot_first[last] : children) - slot_first[first];
+        chunk_parts[first / parents_a_chunk] = static_cast<std::uint32_t>(own * parts_left / std::max(children, 1U));
+    }
+}
+
 void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end,
                                   PreparedFrame& out) {
     for (Index at = begin; at < end;) {
@@ -254,10 +269,14 @@ void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& 
         CHECK(!block.empty() || at == end, "A block holds at least the children of one node");
         out.visits += used;
         const auto parents = static_cast<std::uint32_t>(block.size());
+        share_parts(used);
         for_chunks((parents + parents_a_chunk - 1) / parents_a_chunk, [&](std::uint32_t chunk) {
             const std::uint32_t last = std::min(parents, (chunk + 1) * parents_a_chunk);
-            for (std::uint32_t j = chunk * parents_a_chunk; j < last; ++j) visit_children(view, frustum, j);
+            std::uint32_t parts = chunk_parts[chunk];
+            for (std::uint32_t j = chunk * parents_a_chunk; j < last; ++j) visit_children(view, frustum, j, parts);
+            chunk_parts[chunk] -= parts;
         });
+        for (std::uint32_t chunk = 0; chunk * parents_a_chunk < parents; ++chunk) parts_left -= chunk_parts[chunk];
         close_up_block(view, out);
     }
 }
@@ -436,6 +455,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
         model::make_frustum(pose, viewport, model::far_corners_m(root.box), view.radius_m, out.region.angle_rad);
     const PlaneMask mask = cull_planes(frustum, root.box, all_planes);
     s.occlusion.draw(out.region, viewport);
+    s.parts_left = Occlusion::max_parts_a_set;
     out.visits = 1;
     s.choice_bound = root.rep_count;
     if (mask != culled) s.visits.push_back(s.visit_of(view, 0, none, mask));
