@@ -214,4 +214,17 @@ std::vector<std::uint32_t> order_instances(model::Ground& ground) {
     return order;
 }
 
+void append_moving(model::Model& model, std::span<const model::GroundTriangle> at_rest, const dvec3& pivot,
+                   std::span<const model::MotionKey> keys) {
+    model::Ground& rest = model.moving_ground.rest;
+    if (rest.meshes.empty()) append(rest, {});  // the ground's own mesh, of which nothing moves
+    append(rest, build_tree(at_rest, made_lattice_m));
+    const auto number = static_cast<std::uint32_t>(model.motions.size());
+    rest.instances.push_back({dvec3(0.0), mat3(1.0F), static_cast<std::uint32_t>(rest.meshes.size() - 1)});
+    model.moving_ground.motions.push_back(number);
+    model.motions.push_back({pivot, static_cast<std::uint32_t>(model.motion_keys.size()), static_cast<std::uint32_t>(keys.size()),
+                             keys.back().time_s});
+    model.motion_keys.insert(model.motion_keys.end(), keys.begin(), keys.end());
+}
+
 }  // namespace surefoot::bake

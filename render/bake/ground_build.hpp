@@ -6,6 +6,7 @@
 
 #include "render/model/ground.hpp"
 #include "render/model/ground/capsule.hpp"
+#include "render/model/model.hpp"
 
 namespace surefoot::bake {
 
@@ -23,7 +24,14 @@ struct GroundTree {
 GroundTree build_tree(std::span<const model::GroundTriangle> triangles, double step_m);
 /// Its numbers count on from the ground's.
 void append(model::Ground& ground, GroundTree&& tree);
+/// A thing that moves by itself, with a motion of its own, for a model made by hand. At least one key; the last one's time is the
+/// period. Then model::index_moving_ground() is due, once for all of them.
+void append_moving(model::Model& model, std::span<const model::GroundTriangle> at_rest, const dvec3& pivot,
+                   std::span<const model::MotionKey> keys);
 /// Puts instances into the order of their implicit tree. The ground's meshes must be complete. Returns their old numbers.
 std::vector<std::uint32_t> order_instances(model::Ground& ground);
+
+/// Corners of models made by hand lie on it.
+constexpr double made_lattice_m = 1.0 / 4096;
 
 }  // namespace surefoot::bake

@@ -47,24 +47,14 @@ struct MovingScene {
     [[nodiscard]] model::Model model() const {
         model::Model model;
         model.ground = ground_of(still);
-        bake::append(model.moving_ground.rest, {});
         for (const MovingThing& thing : things) {
-            bake::append(model.moving_ground.rest, bake::build_tree(thing.at_rest, 1.0 / 4096));
-            const auto number = static_cast<std::uint32_t>(model.motions.size());
-            model.moving_ground.rest.instances.push_back({dvec3(0.0), mat3(1.0F), number + 1});
-            model.moving_ground.motions.push_back(number);
-            model::Motion motion;
-            motion.pivot = thing.pivot;
-            motion.first_key = static_cast<std::uint32_t>(model.motion_keys.size());
-            motion.key_count = static_cast<std::uint32_t>(thing.stands.size());
-            motion.period_s = thing.stands.back().time_s;
-            model.motions.push_back(motion);
+            std::vector<model::MotionKey> keys;
             for (const Stand& stand : thing.stands) {
                 const auto s = static_cast<float>(std::sin(stand.angle_rad / 2));
                 const vec3 q = s * vec3(thing.axis);
-                model.motion_keys.push_back(
-                    {stand.time_s, stand.move, {q.x, q.y, q.z, static_cast<float>(std::cos(stand.angle_rad / 2))}});
+                keys.push_back({stand.time_s, stand.move, {q.x, q.y, q.z, static_cast<float>(std::cos(stand.angle_rad / 2))}});
             }
+            bake::append_moving(model, thing.at_rest, thing.pivot, keys);
         }
         model::index_moving_ground(model);
         return model;

@@ -46,24 +46,10 @@ model::MotionKey key_at(double time_s, const dvec3& translation, double turn_rad
 
 /// Of its ground and its motions alone.
 model::Model moving_model(const Faces& still, const std::vector<Mover>& movers) {
-    constexpr double lattice_m = 1.0 / 4096;
     model::Model model;
-    bake::append(model.ground, bake::build_tree(still, lattice_m));
+    bake::append(model.ground, bake::build_tree(still, bake::made_lattice_m));
     model::index_instances(model.ground);
-    bake::append(model.moving_ground.rest, {});
-    for (const Mover& mover : movers) {
-        bake::append(model.moving_ground.rest, bake::build_tree(mover.faces, lattice_m));
-        const auto number = static_cast<std::uint32_t>(model.motions.size());
-        model.moving_ground.rest.instances.push_back({dvec3(0.0), mat3(1.0F), number + 1});
-        model.moving_ground.motions.push_back(number);
-        model::Motion motion;
-        motion.pivot = mover.pivot;
-        motion.first_key = static_cast<std::uint32_t>(model.motion_keys.size());
-        motion.key_count = static_cast<std::uint32_t>(mover.keys.size());
-        motion.period_s = mover.keys.back().time_s;
-        model.motions.push_back(motion);
-        model.motion_keys.insert(model.motion_keys.end(), mover.keys.begin(), mover.keys.end());
-    }
+    for (const Mover& mover : movers) bake::append_moving(model, mover.faces, mover.pivot, mover.keys);
     model::index_moving_ground(model);
     return model;
 }
