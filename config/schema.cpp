@@ -107,7 +107,7 @@ std::vector<Entry> seat_entries() {
     };
 }
 
-/// What is drawn of the light at first, and the hour of the day.
+/// What is drawn of the light at first, the hour of the day, and what moves by itself.
 std::vector<Entry> light_entries() {
     return {
         flag("sunlight", "Light of sun and sky; false: colours as they are. A visitor may switch it (action sunlight, key L).",
@@ -121,6 +121,7 @@ std::vector<Entry> light_entries() {
         number("hour", "h", -1, 24, "Hour of the day that the light is of, by the sun; -1: the model's own light.", &S::hour),
         number("hour_speed", "h/min", -600, 600, "Hours of the day that pass in a minute of the walk; 0: none. It needs an hour.",
                &S::hour_speed),
+        flag("motion", "What animations move does so; false: all stands as at their start.", &S::motion),
         flag("buy_effects",
              "Where time is short, a frame leaves out sunlight, shadows, lamps or fog, if forms show more for it; false: all are "
              "drawn.",

@@ -57,6 +57,7 @@ struct Settings : rt::Switches {
     bool fifo = true, strict = false, in_frame_check = true, occlusion = true, control = false;
     double hour = -1;            ///< of the day; -1: the model's own light stays
     double hour_speed = 0;       ///< hours of the day in a minute of the walk
+    bool motion = true;          ///< what animations move; false: all stands as at their start
     bool buy_effects = false;    ///< frames leave out parts of the light that cost more than they show
     int frame_core = -1;         ///< -1: chosen
     double rest_after_ms = 500;  ///< 0: never

@@ -124,8 +124,8 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     const auto apart = static_cast<float>(std::sqrt(hints.form_ratio > 0.0 ? hints.form_ratio : 1.0));
     out.full_factor = apart;
     out.coarse_factor = 1.0F / apart;
-    out.from_s = hints.time_s;
-    out.to_s = hints.time_s + hints.span_s;
+    out.from_s = impl_->options.motion ? hints.time_s : 0;
+    out.to_s = impl_->options.motion ? hints.time_s + hints.span_s : 0;
     out.without = e.without.load(std::memory_order_relaxed);
     if (e.worth.any()) e.preparer->set_effect_losses(e.worth.at(e.light_hour.load(std::memory_order_relaxed)));
     e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out);
@@ -309,8 +309,9 @@ void Engine::set_time(double time_s) {
     e.draws.plays();
     if (e.restless.empty()) return;
     e.device->draws.plays();
-    e.poses.set_time(time_s);
-    e.device->set_time(time_s);
+    const double shown_s = e.options.motion ? time_s : 0;
+    e.poses.set_time(shown_s);
+    e.device->set_time(shown_s);
 }
 
 void Engine::select_last() {

@@ -39,6 +39,7 @@ struct EngineOptions {
     double rest_after_ms = 0;
     double max_error_rad = 0;  ///< SelectInput::max_error_rad; refused for selectors that do not guarantee it
     select::BenefitModel benefit = select::BenefitModel::surefoot;  ///< of the 1994 selectors
+    bool motion = true;  ///< false: what moves stands as at time 0, in pictures at any time and in sets for them
     /// Groups of DeviceOptions::switches are items: a frame leaves out those whose value per us is less than that of forms.
     bool buys_effects = false;
     std::vector<double> effect_hours;  ///< of the day, rising, for which their worth is found; empty: the model's own light

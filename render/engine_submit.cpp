@@ -37,7 +37,7 @@ bool Engine::Impl::in_view(model::Index node) {
 
 /// Whether anything moves, now or later, that the pose may see.
 bool Engine::Impl::motion_in_view(const Pose& pose) const {
-    if (restless.empty()) return false;
+    if (restless.empty() || !options.motion) return false;
     // A moved sample sees a pixel more.
     const double pixel_rad = model::pixel_angle(pose, options.device.viewport);
     const model::Frustum wide =

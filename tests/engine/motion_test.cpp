@@ -33,8 +33,9 @@ const model::Model& moving_model() {
 }
 
 /// Null, without a failure, only where the library is missing or a sanitizer allows no GL.
-std::unique_ptr<Engine> open(gl::BackendKind backend, model::Model model, double rest_after_ms = 0) {
+std::unique_ptr<Engine> open(gl::BackendKind backend, model::Model model, double rest_after_ms = 0, bool motion = true) {
     EngineOptions options;
+    options.motion = motion;
     options.device.kind = backend;
     options.device.viewport = small_picture;
     options.rest_after_ms = rest_after_ms;
@@ -99,8 +100,8 @@ struct Frames {
     std::int64_t at_ns = 0;
     double budget_us = 1e6;
 
-    explicit Frames(gl::BackendKind backend, model::Model model, double rest_after_ms = 0)
-        : engine(open(backend, std::move(model), rest_after_ms)) {
+    explicit Frames(gl::BackendKind backend, model::Model model, double rest_after_ms = 0, bool motion = true)
+        : engine(open(backend, std::move(model), rest_after_ms, motion)) {
         if (engine != nullptr) engine->reserve(prepared);
     }
     SubmitReport frame(const Pose& pose, double time_s) {
@@ -205,6 +206,22 @@ TEST(Moving, NeverRestsInViewAndRestsElsewhere) {
     rested = false;
     for (int i = 0; i < 60; ++i) rested = rested || still.frame(overlook(), 0.033 * i).at_rest;
     EXPECT_TRUE(rested) << "or the test shows nothing";
+}
+
+TEST(Moving, StandsAsAtItsStartWithoutMotion) {
+    Frames frames(gl::BackendKind::null, moving_model(), 200, false);
+    ASSERT_NE(frames.engine, nullptr);
+    const Index lift = leaf_of(moving_model(), 10);
+    const Pose at_rest = look_at(dvec3(70, 6, 60), 30), above = look_at(dvec3(70, 18, 60), 30);
+    frames.frame(at_rest, 5);
+    EXPECT_TRUE(frames.draws(lift)) << "with motion it is 12 m higher then";
+    EXPECT_EQ(frames.prepared.from_s, 0);
+    EXPECT_EQ(frames.prepared.to_s, 0);
+    frames.frame(above, 5);
+    EXPECT_FALSE(frames.draws(lift));
+    bool rested = false;
+    for (int i = 0; i < 60; ++i) rested = rested || frames.frame(overlook(), 0.033 * i).at_rest;
+    EXPECT_TRUE(rested) << "nothing in view will move";
 }
 
 TEST(Moving, AFrameAllocatesNothing) {

@@ -30,12 +30,13 @@ test::MovingScene lift_hall() {
 
 /// Frames of a session whose hand moves for a tenth of a second and then rests. Each frame is due `late_ns` after the last one's
 /// end: a display that is slower than it says.
-std::vector<FramePose> frames_of(const model::Model& model, double seconds, std::int64_t late_ns) {
+std::vector<FramePose> frames_of(const model::Model& model, double seconds, std::int64_t late_ns, bool motion = true) {
     const test::TemporaryFolder folder;
     std::vector<std::string> notes;
     input::test::GamepadSession hand;
     hand.report({}).hold({}, 0.2).hold({.forward = 0.3}, 0.1).hold({}, seconds);
     WalkRequest request;
+    request.motion = motion;
     request.input_file = folder / "hand.hid";
     EXPECT_TRUE(write_text(request.input_file, hand.text()));
     auto session = InputSession::open(request, lift_frame_ns, notes);
@@ -70,6 +71,11 @@ TEST(MovingWalk, FramesShowTheEyeOverTheFloorOfTheirTime) {
         EXPECT_GT(highest_m, 4) << late_ns;
         EXPECT_LT(off_m, 5e-3) << late_ns << ": a step of 2 ms and where it turns round";
     }
+}
+
+TEST(MovingWalk, WithoutMotionTheFloorStaysWhereItIs) {
+    const std::vector<FramePose> frames = frames_of(lift_hall().model(), 9, 0, false);
+    for (std::size_t slot = 20; slot < frames.size(); ++slot) ASSERT_NEAR(frames[slot].pose.position.y, 1.72, 1e-3) << slot;
 }
 
 TEST(MovingWalk, RegionsHoldTheNextFramesOfALift) {

@@ -66,6 +66,18 @@ TEST_F(MotionWalk, NeverRestsBeforeWhatMoves) {
     EXPECT_GT(rests(false), 20U);
 }
 
+TEST_F(MotionWalk, RestsWithoutMotionAndHasItsSets) {
+    walk::WalkRequest r = request(true, 60);
+    r.motion = false;
+    std::size_t at_rest = 0, without_a_set = 0;
+    for (const rt::FrameRecord& record : test::walk(r).records) {
+        at_rest += record.at_rest ? 1 : 0;
+        without_a_set += record.candidates == 0 ? 1 : 0;
+    }
+    EXPECT_GT(at_rest, 20U);
+    EXPECT_EQ(without_a_set, 0U);
+}
+
 TEST_F(MotionWalk, EveryFrameShowsItsOwnTime) {
     const auto pictures = [&](bool moves) {
         walk::WalkRequest r = request(moves, 40);

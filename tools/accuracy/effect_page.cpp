@@ -150,10 +150,11 @@ std::string region_tables(const EffectReport& r) {
 std::string body_of(const EffectReport& r) {
     std::string out = "<header>\n<p class=\"brand\"><b>Surefoot</b> effects</p>\n<h1>What each effect costs and shows</h1>\n";
     out += fmt::format(
-        "<p class=\"lead\"><b>{}</b> along <b>{}</b>: full detail at {} places, {}×{} pixels, on {}{}.</p>\n</header>\n",
+        "<p class=\"lead\"><b>{}</b> along <b>{}</b>: full detail at {} places, {}×{} pixels, on {}{}{}.</p>\n</header>\n",
         report::escaped(std::filesystem::path(r.model).filename().string()),
         report::escaped(std::filesystem::path(r.path).filename().string()), r.poses, r.width, r.height,
-        report::escaped(r.renderer), r.hour < 0 ? "" : fmt::format(", in the light of {:.4g} h", r.hour));
+        report::escaped(r.renderer), r.hour < 0 ? "" : fmt::format(", in the light of {:.4g} h", r.hour),
+        r.time_s > 0 ? fmt::format(", {:.4g} s after the animations began", r.time_s) : "");
     if (!r.uncalibrated.empty()) out += fmt::format("<p class=\"sub\">{}</p>\n", report::escaped(r.uncalibrated));
     out += called_for(r) + region_tables(r) + three_ways(r.ways);
     out +=

@@ -79,13 +79,15 @@ std::vector<Holder> holders_of(const model::Model& m, std::size_t effect) {
     return out;
 }
 
-UseOfEffects measure_use(Engine& engine, std::span<const Pose> poses, const Progress& progress) {
+UseOfEffects measure_use(Engine& engine, std::span<const Pose> poses, const Progress& progress, double time_s) {
     UseOfEffects use;
     const model::Model& m = engine.model();
     const std::vector<TrianglesByEffect> of_reps = triangles_of_reps(m);
     constexpr double budget_us = walk::frame_share * 1e6 / walked_rate_hz;
     prepare::PreparedFrame prepared;
     engine.reserve(prepared);
+    PrepareHints hints;
+    hints.time_s = time_s;
     std::vector<model::Index> reps;
     const auto count = [&](FramesInUse& frames, const auto& items) {
         reps.clear();
@@ -95,7 +97,7 @@ UseOfEffects measure_use(Engine& engine, std::span<const Pose> poses, const Prog
     for (const Pose& pose : poses) {
         if (progress.stopped()) break;
         count(use.full, engine.full_detail(pose));
-        engine.prepare({pose, 0.0, 0.0}, 0, 0.0, 0.0, prepared);
+        engine.prepare({pose, 0.0, 0.0}, 0, 0.0, 0.0, prepared, hints);
         count(use.walked, engine.select(prepared, budget_us, {}, 0.0).items);
     }
     return use;

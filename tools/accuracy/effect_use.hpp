@@ -53,6 +53,6 @@ struct UseOfEffects {
 model::Index node_of(const model::Model& model, model::Index rep);
 
 /// Draws nothing. Call it on the thread that draws. Ends early where the user stops it.
-UseOfEffects measure_use(Engine& engine, std::span<const Pose> poses, const Progress& progress);
+UseOfEffects measure_use(Engine& engine, std::span<const Pose> poses, const Progress& progress, double time_s = 0);
 
 }  // namespace surefoot::accuracy

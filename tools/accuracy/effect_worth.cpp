@@ -145,7 +145,7 @@ Result<UseOfEffects> measure_whole(const PlacesRequest& request, const Path& pat
     engine.device().bind();
     report.renderer = engine.device().renderer();
     report.use_frames = std::max(min_use_poses, request.poses);
-    const UseOfEffects use = measure_use(engine, poses_along(path, report.use_frames), progress);
+    const UseOfEffects use = measure_use(engine, poses_along(path, report.use_frames), progress, request.time_s);
     engine.device().release();
     progress.update("all on", 0.1);
     auto ways = measure_ways(engine, request, poses, progress);
@@ -169,6 +169,7 @@ Result<EffectReport> measure_effects(const PlacesRequest& request, const Progres
     report.height = request.height;
     report.poses = request.poses;
     report.hour = request.hour;
+    report.time_s = request.time_s;
     report.regions = regions_of(*model);
     const std::vector<Pose> poses = poses_along(chosen->path, request.poses);
     progress.update("frames in use", 0);

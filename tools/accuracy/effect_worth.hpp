@@ -41,6 +41,7 @@ struct EffectReport {
     std::string model, path, renderer, machine, uncalibrated;
     std::uint32_t width = 0, height = 0, poses = 0;
     double hour = -1;                  ///< of the day; below 0: the model's own light
+    double time_s = 0;                 ///< of the model's animations
     std::vector<EffectWorth> effects;  ///< all, in the order of application
     std::vector<EffectRegion> regions;
     std::uint32_t use_frames = 0;  ///< of the shares of frames

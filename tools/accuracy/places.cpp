@@ -34,6 +34,7 @@ Result<PlacesEngine> open_engine_of_places(const PlacesRequest& request, model::
     PlacesEngine out;
     out.engine = std::move(*engine);
     if (request.hour >= 0) out.engine->set_light(model::daylight_at(request.hour, out.engine->model().light));
+    out.engine->set_time(request.time_s);
     out.machine = measure::machine_identity(out.engine->device().renderer(), request.rasterisers);
     out.uncalibrated = note;
     return out;

@@ -24,6 +24,7 @@ struct PlacesRequest {
     double lift_m = 0;
     double shift_x = 0, shift_y = 0;  ///< off axis, as model::Viewport has it
     double hour = -1;                 ///< of the day; below 0: the model's own light
+    double time_s = 0;                ///< of the model's animations
 
     [[nodiscard]] model::Viewport viewport() const { return {width, height, shift_x, shift_y}; }
 };

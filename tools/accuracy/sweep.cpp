@@ -46,8 +46,10 @@ struct Sweep {
     Engine& engine;
     std::vector<Station> stations;
     int repeats;
+    double time_s;  ///< of the model's animations
 
     double time_full(const Station& station, const std::vector<gl::DrawItem>& items);
+    void prepare();
     /// Draws each place once: the first frames of an engine take longer than later ones.
     void warm_up(double budget_us);
     Result<AccuracyPoint> measure(const std::string& selector, double budget_us, double target_error_rad);
@@ -71,6 +73,12 @@ SubmitLimits no_limits() {
     limits.now_ns = [](void*) { return rt::monotonic_ns(); };
     limits.limit_us = 1e12;
     return limits;
+}
+
+void Sweep::prepare() {
+    PrepareHints hints;
+    hints.time_s = time_s;
+    for (Station& station : stations) engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared, hints);
 }
 
 void Sweep::warm_up(double budget_us) {
@@ -198,8 +206,7 @@ Result<void> sweep_selector(Sweep& sweep, const AccuracyRequest& request, const 
                             const PartProgress& progress, AccuracyRun& run) {
     Engine& engine = sweep.engine;
     if (auto set = engine.set_selector(selector); !set) return set;
-    for (Station& station : sweep.stations)  // `flat` needs the leaves, the others do not
-        engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
+    sweep.prepare();  // `flat` needs the leaves, the others do not
     std::vector<double> budgets = request.budgets_ms;
     if (budgets.empty())
         for (const double share : {0.12, 0.18, 0.25, 0.35, 0.5, 0.7, 1.0, 1.4}) budgets.push_back(share * run.full_frame_ms);
@@ -244,7 +251,7 @@ constexpr std::array<Change, 4> changes = {{
 /// Prepares and draws all places by `selector` at the budget of the rate.
 Result<void> mark_change(Sweep& sweep, std::string_view change, const std::string& selector, AccuracyRun& run) {
     if (auto set = sweep.engine.set_selector(selector); !set) return set;
-    for (Station& station : sweep.stations) sweep.engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
+    sweep.prepare();
     sweep.warm_up(run.working_ms * 1e3);
     auto measured = sweep.measure(selector, run.working_ms * 1e3, 0.0);
     if (!measured) return measured.error();
@@ -291,7 +298,7 @@ Result<void> sweep_changes(Sweep& as_swept, const AccuracyRequest& request, cons
         if (!engine) return engine.error();
         (*engine)->device().bind();
         (*engine)->hide_effects(engines[i].hidden);
-        Sweep sweep{**engine, std::vector<Station>(as_swept.stations.size()), as_swept.repeats};
+        Sweep sweep{**engine, std::vector<Station>(as_swept.stations.size()), as_swept.repeats, as_swept.time_s};
         for (std::size_t s = 0; s < sweep.stations.size(); ++s) {
             sweep.stations[s].pose = as_swept.stations[s].pose;
             sweep.stations[s].full = as_swept.stations[s].full;
@@ -326,7 +333,7 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
     engine.device().bind();
     run.renderer = engine.device().renderer();
 
-    Sweep sweep{engine, std::vector<Station>(request.poses), std::max(1, request.repeats)};
+    Sweep sweep{engine, std::vector<Station>(request.poses), std::max(1, request.repeats), request.time_s};
     std::vector<double> full_ms;
     const std::vector<Pose> poses = poses_along(chosen->path, request.poses);
     for (std::uint32_t i = 0; i < request.poses; ++i) {

@@ -138,6 +138,7 @@ void add_accuracy(CLI::App& app, Context& context) {
     add_benefit(c, r.benefit);
     c->add_option("--budget", r.budgets_ms, "Frame budgets in ms (else eight fractions of the time of a full frame)")
         ->check(number_within(0.001, 1e5, "ms"));
+    add_time(c, r.time_s);
     add_setting(c, a->settings, "--lift", "lift_m");
     add_setting(c, a->settings, "--rate", "rate_hz", "Frame rate at whose budget one more millisecond is bought.");
     c->add_option("--backend", r.backend, "Backend that draws: " + gl::drawing_backends())

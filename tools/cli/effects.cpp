@@ -155,6 +155,7 @@ void add_effects(CLI::App& app, Context& context) {
     c->add_option("--hour", r.hour, "Hour of the day whose light is drawn, 0 to 24. Default: as the model was baked")
         ->check(number_within(0, 24, "h"))
         ->needs(report);
+    add_time(c, r.time_s)->needs(report);
     add_setting(c, a->settings, "--lift", "lift_m");
     c->add_option("--backend", r.backend, "Backend that draws: " + gl::drawing_backends())
         ->check(drawing_backend())

@@ -62,6 +62,13 @@ CLI::Validator drawing_backend() {
             ""};
 }
 
+CLI::Option* add_time(CLI::App* command, double& time_s) {
+    return command
+        ->add_option("--time", time_s, "Seconds since the model's animations began: what moves is drawn as it stands then")
+        ->check(number_within(0, 1e6, "s"))
+        ->capture_default_str();
+}
+
 void add_benefit(CLI::App* command, select::BenefitModel& model) {
     std::string help = fmt::format("Benefit of a cluster for {}. ", fmt::join(select::searches_by_benefit(), " and "));
     std::vector<std::string_view> names;

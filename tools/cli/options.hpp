@@ -28,6 +28,8 @@ CLI::Validator one_of(std::span<const std::string_view> words);
 CLI::Validator drawing_backend();
 /// --benefit: the benefit by which the 1994 selectors go.
 void add_benefit(CLI::App* command, select::BenefitModel& model);
+/// --time SECONDS, of the model's animations.
+CLI::Option* add_time(CLI::App* command, double& time_s);
 /// An error where a benefit is chosen, and none of the selectors goes by it.
 Result<void> check_benefit(select::BenefitModel model, std::span<const std::string> selectors);
 /// Any text but the empty one: an empty variable of a script is no wish for no output.

@@ -171,6 +171,7 @@ void add_light(CLI::App* c, const std::shared_ptr<SettingArguments>& a) {
         c->add_flag(fmt::format("--no-{}", rt::light_switches[i].name), a->no_light[i], without[i]);
     add_setting(c, a, "--hour", "hour");
     add_setting(c, a, "--hour-speed", "hour_speed");
+    c->add_flag("--no-motion", a->no_motion, "What animations move stands as at their start");
     c->add_flag(
         "--buy-effects", a->buy_effects,
         "Leave parts of the light out of frames in which forms show more for their time. A part stays away for 3 s at 30 Hz "

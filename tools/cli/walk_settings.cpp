@@ -84,6 +84,7 @@ Result<config::Configuration> read_settings(const SettingArguments& a) {
     if (a.no_fifo) c.values.fifo = false;
     if (a.no_check) c.values.in_frame_check = false;
     if (a.no_occlusion) c.values.occlusion = false;
+    if (a.no_motion) c.values.motion = false;
     if (a.buy_effects) c.values.buy_effects = true;
     for (std::size_t i = 0; i < rt::switch_count; ++i)
         if (a.no_light[i]) c.values.*rt::light_switches[i].on = false;

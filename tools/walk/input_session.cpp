@@ -41,6 +41,7 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
     session->source_name_ = request.input_file;
     session->period_ns_ = period_ns;
     session->mode_ = request.walking;
+    session->still_ = !request.motion;
     session->body_ = {request.eye_height_m, request.body_radius_m, request.step_height_m,
                       request.max_slope_deg * std::numbers::pi / 180, request.edge_m};
     session->motion_ = steering.motion;
@@ -77,6 +78,7 @@ void InputSession::begin(const Path& path, const model::Ground& ground, std::int
 void InputSession::begin(const Path& path, const model::Model& model, std::int64_t start_ns, bool real_clock,
                          const rt::Placement& placement, PathPoses* path_poses) {
     walking_ = std::make_unique<Walking>(model.ground, body_, mode_, &model);
+    if (still_) walking_->hold_still();
     begin_walking(path, model.ground, start_ns, real_clock, placement, path_poses);
 }
 

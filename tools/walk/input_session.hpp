@@ -82,6 +82,7 @@ private:
     rt::TripleBuffer<SteeredSample> samples_;
     JumpBuffer jump_poses_;
     rt::WalkingMode mode_ = rt::WalkingMode::automatic;
+    bool still_ = false;  // nothing moves by itself
     model::Body body_;
     std::unique_ptr<Walking> walking_;
     std::optional<RegionClip> clip_;

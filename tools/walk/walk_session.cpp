@@ -120,6 +120,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others, model::Ef
     const bool may_switch = !r.input_file.empty() || (r.may_steer && r.backend == window_input);
     options.device.switches = switch_groups(r, may_switch || r.buy_effects, called_for);
     options.buys_effects = r.buy_effects;
+    options.motion = r.motion;
     options.effect_hours = effect_hours(r);
     options.device.null.cost_scale = r.cost_scale;
     options.device.null.noise = r.cost_noise;

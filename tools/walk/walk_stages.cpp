@@ -268,7 +268,8 @@ void WalkStages::select(rt::FrameRecord& record) {
     const Correction before = correction_at(set.resolution, filtered_);
     record.correction = static_cast<float>(before.factor);
     record.budget_us = static_cast<float>(planned_us(before, 0));
-    const bool moved_on = !engine_.model().motions.empty() && walk_time_s() > set.to_s + 1e-6;  // where things were
+    const bool moved_on =
+        request_.motion && !engine_.model().motions.empty() && walk_time_s() > set.to_s + 1e-6;  // where things were
     coarse_ = age > rt::oldest_prepared(options_.period_ns) || moved_on || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
         engine_.select_last();

@@ -24,6 +24,8 @@ public:
     /// in it carries and stops the walker too. It must outlive this as well.
     Walking(const model::Ground& ground, const model::Body& body, rt::WalkingMode mode, const model::Model* moving = nullptr);
 
+    /// From now on all stands as at time 0. Before the first step.
+    void hold_still() { still_ = true; }
     /// What the next step asks. `flies`: the device that steers moves freely in space. `time_s`: since the walk began, of the
     /// step's end.
     [[nodiscard]] input::Ground ground(bool flies, double time_s = 0);
@@ -52,7 +54,7 @@ public:
 private:
     std::optional<model::Walker> walker_;
     rt::WalkingMode mode_;
-    bool walks_ = false, walked_ = false;
+    bool still_ = false, walks_ = false, walked_ = false;
     std::atomic<model::Barrier> shown_{model::Barrier::clear};
     std::atomic<bool> shown_walks_{false}, shown_freed_{false};
 };
