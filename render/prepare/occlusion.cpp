@@ -276,17 +276,18 @@ bool Occlusion::hides(const Box& box, std::uint32_t& parts) const {
     if (!(box.distance(eye_) > static_cast<double>(radius_m_))) return false;
     // A large box is hidden where its parts are, each at a depth of its own.
     const PartLimits& limits = occluders_.has_rooms ? parts_behind_rooms : usual_parts;
-    const auto more = static_cast<int>(std::min(parts, static_cast<std::uint32_t>(limits.max_parts - usual_parts.max_parts)));
-    const int max_parts = usual_parts.max_parts + more;
     std::array<Box, parts_behind_rooms.max_stack> stack;
     std::size_t top = 0;
     stack[top++] = box;
     for (int tests = 0; top > 0; ++tests) {
         const Box part = stack[--top];
-        if (tests > usual_parts.max_parts) --parts;
+        if (occluders_.has_rooms && tests > usual_parts.max_parts) {
+            if (parts == 0) return false;
+            --parts;
+        }
         const Hidden found = look(part);
         if (found == Hidden::yes) continue;
-        if (found == Hidden::no || tests == max_parts || top + 2 > limits.max_stack) return false;
+        if (found == Hidden::no || tests == limits.max_parts || top + 2 > limits.max_stack) return false;
         // Across the axis that adds most to its depth.
         const dvec3 size = (part.max - part.min) * (glm::abs(forward_) + 0.1);
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.z >= size.y ? 2 : 1;

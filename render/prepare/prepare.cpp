@@ -98,7 +98,6 @@ struct Preparer::Impl {
     [[nodiscard]] const Box& box_of(Index node, Box& now) const;
     NodeVisit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
     void visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j, std::uint32_t& parts);
-    void share_parts(std::uint32_t children);
     void expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end, PreparedFrame& out);
     void close_up_block(const RegionView& view, PreparedFrame& out);
     void drop_false_positives(PreparedFrame& out);
@@ -140,7 +139,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     slots.resize(std::max<std::size_t>(std::min<std::size_t>(min_slots, m.nodes.size()), max_children));
     block.reserve(slots.size());
     hidden_nodes.reserve(max_hidden);
-    slot_first.resize(slots.size());
+    slot_first.resize(slots.size() + 1);
     slot_count.resize(slots.size());
     slot_hidden.resize(slots.size());
     chunk_parts.resize(slots.size() / parents_a_chunk + 1);
@@ -243,16 +242,6 @@ void Preparer::Impl::close_up_block(const RegionView& view, PreparedFrame& out) 
     }
 }
 
-/// What is left of the work on parts of boxes, by the children of each chunk: so it is the same at any number of workers.
-void Preparer::Impl::share_parts(std::uint32_t children) {
-    const auto parents = static_cast<std::uint32_t>(block.size());
-    for (std::uint32_t first = 0; first < parents; first += parents_a_chunk) {
-        const std::uint32_t last = first + parents_a_chunk;
-        const std::uint64_t own = (last < parents ? slot_first[last] : children) - slot_first[first];
-        chunk_parts[first / parents_a_chunk] = static_cast<std::uint32_t>(own * parts_left / std::max(children, 1U));
-    }
-}
-
 void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end,
                                   PreparedFrame& out) {
     for (Index at = begin; at < end;) {
@@ -269,12 +258,15 @@ void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& 
         CHECK(!block.empty() || at == end, "A block holds at least the children of one node");
         out.visits += used;
         const auto parents = static_cast<std::uint32_t>(block.size());
-        share_parts(used);
+        slot_first[block.size()] = used;
         for_chunks((parents + parents_a_chunk - 1) / parents_a_chunk, [&](std::uint32_t chunk) {
             const std::uint32_t last = std::min(parents, (chunk + 1) * parents_a_chunk);
-            std::uint32_t parts = chunk_parts[chunk];
+            // Of the work that is left, by the number of children: so it is the same at any number of workers.
+            const std::uint64_t children = slot_first[last] - slot_first[chunk * parents_a_chunk];
+            const auto own = static_cast<std::uint32_t>(children * parts_left / used);
+            std::uint32_t parts = own;
             for (std::uint32_t j = chunk * parents_a_chunk; j < last; ++j) visit_children(view, frustum, j, parts);
-            chunk_parts[chunk] -= parts;
+            chunk_parts[chunk] = own - parts;
         });
         for (std::uint32_t chunk = 0; chunk * parents_a_chunk < parents; ++chunk) parts_left -= chunk_parts[chunk];
         close_up_block(view, out);

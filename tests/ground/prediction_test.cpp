@@ -158,19 +158,18 @@ TEST(WalkerPrediction, NoPoseBeyondAWallIsForeseenAndHardlyAPoseIsMissed) {
     EXPECT_LT(missed, checked / 50);
 }
 
-/// In a lift that rises past the top of a shaft's wall, or sinks to a door below a wall.
+/// Beside the wall of a shaft. The lift may stop at once or go on, and walls of the floor that it leaves are no bound of that.
 TEST(WalkerPrediction, WallsOfTheFloorThatALiftLeavesDoNotClip) {
     Triangles t;
-    add_floor(t, -20, 20, -20, 20, -9);
-    add_wall(t, {0.4, -5}, {0.4, 5}, -9, 0.45);  // the feet are 0.2 m too low to step over it
-    add_wall(t, {5.4, -5}, {5.4, 5}, 1.65, 9);   // the eye is 0.05 m too high to look under it
+    add_wall(t, {0.4, -5}, {0.4, 5}, -9, 2.5);
     const model::Ground ground = ground_of(t);
     walk::RegionClip clip(ground, {});
-    const auto clipped = [&](const dvec3& feet, double rise_m, double carried_m) {
+    constexpr double unclipped_m = 1.2;
+    const auto clipped = [&](double rise_m, double carried_m) {
         walk::PredictedRegion region;
         region.known = region.on_foot = true;
-        region.feet = feet, region.eye = feet + dvec3(0, 1.7, 0), region.way = {0.3, rise_m, 0};
-        region.region = {Pose{region.eye + region.way, {1, 0, 0, 0}, 1}, 0.3, 0.1};
+        region.eye = dvec3(0, 1.7, 0), region.way = {0.05, rise_m, 0};
+        region.region = {Pose{region.eye + region.way, {1, 0, 0, 0}, 1}, unclipped_m, 0.1};
         region.carried_m = carried_m;
         clip.clip(region);
         return region.region;
@@ -178,12 +177,13 @@ TEST(WalkerPrediction, WallsOfTheFloorThatALiftLeavesDoNotClip) {
     const auto holds = [](const prepare::Region& region, const dvec3& eye) {
         return glm::length(region.centre.position - eye) <= region.radius_m + 1e-9;
     };
-    EXPECT_FALSE(holds(clipped({0, 0, 0}, 0, 0), {0.4, 1.7, 0})) << "the wall stops who walks";
-    EXPECT_TRUE(holds(clipped({0, 0, 0}, 0.25, 0.25), {0.4, 1.95, 0})) << "and is below who rises";
-    EXPECT_FALSE(holds(clipped({5, 0, 0}, 0, 0), {5.4, 1.7, 0}));
-    EXPECT_TRUE(holds(clipped({5, 0, 0}, -0.4, 0.4), {5.4, 1.3, 0}));
-    const prepare::Region stopped = clipped({0.08, 0, 0}, 0.25, 0.25);
-    EXPECT_TRUE(holds(stopped, {0.08, 1.7, 0})) << "the lift stops at once: no wall is above or below the eye";
+    EXPECT_LT(clipped(0, 0).radius_m, 0.41) << "the wall stops who walks";
+    for (const double rise_m : {0.5, -0.5}) {
+        const prepare::Region rider = clipped(rise_m, 0.6);
+        EXPECT_LT(rider.radius_m, unclipped_m) << "the wall is beside him all the same";
+        for (const double share : {0.0, 0.5, 1.0, 1.2})
+            EXPECT_TRUE(holds(rider, {0.1, 1.7 + share * rise_m, 0.05})) << rise_m << ' ' << share;
+    }
 }
 
 TEST(WalkerMotion, IsLevelHoweverTheEyeLooks) {

@@ -12,7 +12,7 @@ public:
     /// The ground must outlive this.
     RegionClip(const model::Ground& ground, const model::Body& body) : walker_(ground, body) {}
     /// No pose of a region on foot lies beyond a wall then; what is seen from there is not clipped. Where something may carry the
-    /// walker, only walls count that stop it from here, from lower and from higher. Other regions stay as they are.
+    /// walker, the region is larger by that: walls beside a lift do not stop it. Other regions stay as they are.
     void clip(PredictedRegion& predicted);
 
 private:
