@@ -20,12 +20,6 @@ struct WorthPoint {
     float area = 0;
 };
 
-/// What lights shade: the moments, and the colour of fog in each.
-struct WorthLights {
-    std::vector<model::Daylight> moments;
-    std::array<float, 3> sky;
-};
-
 /// The mean colour of a texture: its smallest mip level.
 vec3 mean_texel(const model::Model& model, const model::Texture& texture) {
     std::uint64_t at = texture.first_byte;
@@ -36,22 +30,23 @@ vec3 mean_texel(const model::Model& model, const model::Texture& texture) {
     return {channel(0), channel(1), channel(2)};
 }
 
-vec3 surface_colour(const model::Model& model, const model::Material& material, const model::Vertex& vertex) {
+vec3 surface_colour(const model::Material& material, const model::Vertex& vertex, std::span<const vec3> mean_texels) {
     vec3 colour(material.colour[0], material.colour[1], material.colour[2]);
     if ((material.effects & model::effect_texture) != 0 && material.texture != model::none)
-        colour *= mean_texel(model, model.textures[material.texture]);
+        colour *= mean_texels[material.texture];
     if ((material.effects & model::effect_vertex_colour) != 0)
         colour *= vec3(vertex.colour[0], vertex.colour[1], vertex.colour[2]) / 255.0F;
     return colour;
 }
 
-WorthPoint point_of(const model::Model& model, const model::Part& part, const mat3& to_world, std::uint32_t vertex, float area) {
+WorthPoint point_of(const model::Model& model, std::span<const vec3> mean_texels, const model::Part& part, const mat3& to_world,
+                    std::uint32_t vertex, float area) {
     const model::Material& material = model.materials[part.material];
     const model::Vertex& v = model.vertices[vertex];
     WorthPoint point;
     point.area = area;
     point.effects = material.effects;
-    point.colour = surface_colour(model, material, v);
+    point.colour = surface_colour(material, v, mean_texels);
     const vec3 normal = to_world * (vec3(v.normal[0], v.normal[1], v.normal[2]) / 127.0F);
     const float length = glm::length(normal);
     if (length > 0.0F) point.at.normal = normal / length;
@@ -64,9 +59,16 @@ WorthPoint point_of(const model::Model& model, const model::Part& part, const ma
     return point;
 }
 
+/// Points of a leaf.
+struct LeafPoints {
+    std::array<WorthPoint, points_a_leaf> points;
+    std::size_t count = 0;
+    [[nodiscard]] std::span<const WorthPoint> all() const { return std::span(points).first(count); }
+};
+
 /// Corners of triangles that are evenly spread over the list of a leaf's full detail.
-void collect_points(const model::Model& model, const model::Node& leaf, std::vector<WorthPoint>& points) {
-    points.clear();
+void collect_points(const model::Model& model, std::span<const vec3> mean_texels, const model::Node& leaf, LeafPoints& found) {
+    found.count = 0;
     const model::Representation& rep = model.reps[leaf.first_rep + leaf.rep_count - 1];
     const mat3& linear = model.placements[rep.placement].linear;
     const mat3 to_world = cofactors(linear) * (glm::determinant(linear) < 0.0F ? -1.0F : 1.0F);
@@ -75,14 +77,14 @@ void collect_points(const model::Model& model, const model::Node& leaf, std::vec
     for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
         const model::Part& part = model.parts[p];
         for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3, ++triangle) {
-            if (triangle % stride != 0) continue;
+            if (triangle % stride != 0 || found.count == points_a_leaf) continue;
             const auto corner = [&](std::uint32_t k) { return part.first_vertex + model.indices[part.first_index + i + k]; };
             const auto place = [&](std::uint32_t k) {
                 const float* const at = model.vertices[corner(k)].position;
                 return linear * vec3(at[0], at[1], at[2]);
             };
             const float area = 0.5F * glm::length(glm::cross(place(1) - place(0), place(2) - place(0)));
-            points.push_back(point_of(model, part, to_world, corner((triangle / stride) % 3), area));
+            found.points[found.count++] = point_of(model, mean_texels, part, to_world, corner((triangle / stride) % 3), area);
         }
     }
 }
@@ -132,21 +134,7 @@ float size_of(const Box& box) {
     return box.empty() || !std::isfinite(outline) ? 0.0F : static_cast<float>(outline);
 }
 
-/// A cluster's loss is the mean of its leaves', by their size.
-void go_up(const model::Model& model, std::span<float> loss) {
-    std::vector<double> weight(model.nodes.size()), sum(model.nodes.size());
-    for (std::size_t n = model.nodes.size(); n-- > 0;) {
-        const model::Node& node = model.nodes[n];
-        if (node.child_count == 0) {
-            weight[n] = static_cast<double>(size_of(node.box));
-            sum[n] = weight[n] * static_cast<double>(loss[n]);
-        }
-        loss[n] = weight[n] > 0 ? static_cast<float>(sum[n] / weight[n]) : loss[n];
-        if (node.parent == model::none) continue;
-        weight[node.parent] += weight[n];
-        sum[node.parent] += sum[n];
-    }
-}
+constexpr std::size_t nodes_ahead = 256;  // in a call: a fraction of a millisecond
 
 }  // namespace
 
@@ -163,44 +151,85 @@ std::vector<EffectGroup> groups_of(std::span<const model::EffectMask> switches) 
 
 EffectWorth::EffectWorth(const model::Model& model, std::span<const EffectGroup> groups, std::span<const double> hours,
                          const std::array<float, 3>& sky)
-    : groups_(groups.begin(), groups.end()), hours_(hours.begin(), hours.end()), nodes_(model.nodes.size()) {
+    : model_(&model),
+      groups_(groups.begin(), groups.end()),
+      hours_(hours.begin(), hours.end()),
+      sky_(sky),
+      nodes_(model.nodes.size()) {
     if (groups.empty()) return;
-    std::vector<model::Daylight> moments;
-    for (const double hour : hours_) moments.push_back(model::daylight_at(hour, model.light));
-    if (moments.empty()) moments.push_back(model::daylight_of_model(model.sun_direction, model.light));
-    fog_density_ = moments.front().fog_density;
-    losses_.resize(moments.size() * groups_.size() * nodes_);
-    const auto of = [&](std::size_t moment, std::size_t group) {
-        return std::span(losses_).subspan((moment * groups_.size() + group) * nodes_, nodes_);
-    };
+    for (const double hour : hours_) moments_.push_back(model::daylight_at(hour, model.light));
     const model::Daylight own = model::daylight_of_model(model.sun_direction, model.light);
-    double own_energy = 0;
-    std::vector<double> energy(moments.size());
-    std::vector<WorthPoint> points;
-    for (std::size_t n = 0; n < nodes_; ++n) {
-        if (model.nodes[n].child_count > 0) continue;
-        collect_points(model, model.nodes[n], points);
-        const auto size = static_cast<double>(size_of(model.nodes[n].box));
-        own_energy += size * worth_of_leaf(points, {}, own, vec3(0.0F)).energy;
-        for (std::size_t m = 0; m < moments.size(); ++m) {
-            const vec3 fog = vec3(sky[0], sky[1], sky[2]) * moments[m].background;
-            const LeafWorth worth = worth_of_leaf(points, groups_, moments[m], fog);
-            energy[m] += size * worth.energy;
-            for (std::size_t g = 0; g < groups_.size(); ++g) of(m, g)[n] = worth.losses[g];
+    if (moments_.empty()) moments_.push_back(own);
+    known_.resize(moments_.size(), false);
+    pass_.moment = moments_.size();
+    losses_.resize(moments_.size() * groups_.size() * nodes_);
+    for (const model::Texture& texture : model.textures) mean_texels_.push_back(mean_texel(model, texture));
+    weight_.resize(nodes_);
+    sum_.resize(nodes_);
+    LeafPoints points;
+    for (std::size_t n = nodes_; n-- > 0;) {
+        const model::Node& node = model.nodes[n];
+        if (node.child_count == 0) {
+            collect_points(model, mean_texels_, node, points);
+            weight_[n] = static_cast<double>(size_of(node.box));
+            own_energy_ += weight_[n] * worth_of_leaf(points.all(), {}, own, vec3(0.0F)).energy;
         }
-    }
-    for (std::size_t m = 0; m < moments.size(); ++m) {
-        constexpr double darkest = 0.01;
-        const double bright = own_energy > 0 ? std::clamp(energy[m] / own_energy, darkest, 1.0) : 1.0;
-        for (std::size_t g = 0; g < groups_.size(); ++g) {
-            for (float& loss : of(m, g)) loss /= static_cast<float>(bright);
-            go_up(model, of(m, g));
-        }
+        if (node.parent != model::none) weight_[node.parent] += weight_[n];
     }
 }
 
-std::array<prepare::EffectLoss, prepare::max_effect_groups> EffectWorth::at(float hour) const {
+/// Goes on with a light, up to so many nodes.
+void EffectWorth::go_on(std::size_t moment, std::size_t max_nodes) {
+    if (pass_.moment != moment) pass_ = {moment, 0, 0};
+    const vec3 fog = vec3(sky_[0], sky_[1], sky_[2]) * moments_[moment].background;
+    LeafPoints points;
+    const std::size_t end = pass_.node + std::min(max_nodes, nodes_ - pass_.node);
+    for (; pass_.node < end; ++pass_.node) {
+        const model::Node& node = model_->nodes[pass_.node];
+        if (node.child_count > 0) continue;
+        collect_points(*model_, mean_texels_, node, points);
+        const LeafWorth worth = worth_of_leaf(points.all(), groups_, moments_[moment], fog);
+        pass_.energy += weight_[pass_.node] * worth.energy;
+        for (std::size_t g = 0; g < groups_.size(); ++g) losses_of(moment, g)[pass_.node] = worth.losses[g];
+    }
+    if (pass_.node == nodes_) finish();
+}
+
+/// All leaves of the light are known.
+void EffectWorth::finish() {
+    constexpr double darkest = 0.01;
+    const double bright = own_energy_ > 0 ? std::clamp(pass_.energy / own_energy_, darkest, 1.0) : 1.0;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        for (float& loss : losses_of(pass_.moment, g)) loss /= static_cast<float>(bright);
+        go_up(losses_of(pass_.moment, g));
+    }
+    known_[pass_.moment] = true;
+    pass_.moment = moments_.size();
+}
+
+/// A cluster's loss is the mean of its leaves', by their size.
+void EffectWorth::go_up(std::span<float> loss) {
+    std::fill(sum_.begin(), sum_.end(), 0.0);
+    for (std::size_t n = nodes_; n-- > 0;) {
+        const model::Node& node = model_->nodes[n];
+        if (node.child_count == 0) sum_[n] = weight_[n] * static_cast<double>(loss[n]);
+        loss[n] = weight_[n] > 0 ? static_cast<float>(sum_[n] / weight_[n]) : loss[n];
+        if (node.parent != model::none) sum_[node.parent] += sum_[n];
+    }
+}
+
+/// The day goes on, or back: the lights of the hours around are soon needed.
+void EffectWorth::look_ahead(std::size_t after) {
+    const std::size_t count = moments_.size();
+    for (const std::size_t by : {std::size_t{1}, std::size_t{2}, count - 2, count - 3}) {
+        const std::size_t moment = (after + by) % count;
+        if (!known_[moment]) return go_on(moment, nodes_ahead);
+    }
+}
+
+std::array<prepare::EffectLoss, prepare::max_effect_groups> EffectWorth::at(float hour) {
     std::array<prepare::EffectLoss, prepare::max_effect_groups> out{};
+    if (!any()) return out;
     std::size_t before = 0, after = 0;
     float between = 0;
     if (!hours_.empty() && std::isfinite(hour)) {
@@ -210,11 +239,12 @@ std::array<prepare::EffectLoss, prepare::max_effect_groups> EffectWorth::at(floa
         const double apart = hours_[after] - hours_[before];
         between = apart > 0 ? static_cast<float>((static_cast<double>(hour) - hours_[before]) / apart) : 0.0F;
     }
-    const auto of = [&](std::size_t light, std::size_t group) {
-        return std::span(losses_).subspan((light * groups_.size() + group) * nodes_, nodes_);
-    };
+    for (const std::size_t moment : {before, after})
+        if (!known_[moment]) go_on(moment, nodes_);
+    if (moments_.size() > 3) look_ahead(after);
     for (std::size_t g = 0; g < groups_.size(); ++g)
-        out[g] = {of(before, g), of(after, g), between, effects::hides_by_depth(groups_[g].own), fog_density_};
+        out[g] = {losses_of(before, g), losses_of(after, g), between, effects::hides_by_depth(groups_[g].own),
+                  moments_.front().fog_density};
     return out;
 }
 

@@ -25,25 +25,48 @@ std::vector<EffectGroup> groups_of(std::span<const model::EffectMask> switches);
 /// Differences by node, group and light. Each leaf is shaded at points of its full detail with and without the group: the mean
 /// squared difference of the colours counts. A cluster has the mean of its leaves, by their size. Losses of forms are measured
 /// in the model's own light. So in a darker one, where forms lose less, differences count by how much darker the model is.
-/// Constant once it is made.
+/// A light is worked out when at() first needs it, and the next hours' bit by bit before. What at() returns does not depend on
+/// that.
 class EffectWorth {
 public:
     EffectWorth() = default;
     /// hours: of the day, rising from 0 to 24, between which a light is interpolated; empty: the model's own light.
-    /// `sky`: the colour behind everything, which fog takes. Needs the model's texels. Allocates.
+    /// `sky`: the colour behind everything, which fog takes. Needs the model's texels, but not later. The model must outlive it.
     EffectWorth(const model::Model& model, std::span<const EffectGroup> groups, std::span<const double> hours,
                 const std::array<float, 3>& sky);
 
-    /// What the groups lose at an hour; no number: the first light. The spans live as long as this.
-    [[nodiscard]] std::array<prepare::EffectLoss, prepare::max_effect_groups> at(float hour) const;
+    /// What the groups lose at an hour; no number: the first light. The spans live as long as this. One thread at a time.
+    /// Allocates nothing.
+    [[nodiscard]] std::array<prepare::EffectLoss, prepare::max_effect_groups> at(float hour);
     [[nodiscard]] bool any() const { return !losses_.empty(); }
 
 private:
+    /// A light that is being worked out, node by node.
+    struct Pass {
+        std::size_t moment = 0, node = 0;
+        double energy = 0;
+    };
+
+    std::span<float> losses_of(std::size_t moment, std::size_t group) {
+        return std::span(losses_).subspan((moment * groups_.size() + group) * nodes_, nodes_);
+    }
+    void go_on(std::size_t moment, std::size_t max_nodes);
+    void finish();
+    void go_up(std::span<float> loss);
+    void look_ahead(std::size_t after);
+
+    const model::Model* model_ = nullptr;
     std::vector<EffectGroup> groups_;
     std::vector<double> hours_;
+    std::array<float, 3> sky_{};
+    std::vector<model::Daylight> moments_;
+    std::vector<bool> known_;  ///< moments that are worked out
+    Pass pass_;
+    double own_energy_ = 0;
     std::size_t nodes_ = 0;
-    float fog_density_ = 0;
-    std::vector<float> losses_;  ///< [(light * groups + group) * nodes + node]
+    std::vector<vec3> mean_texels_;     ///< by texture
+    std::vector<double> weight_, sum_;  ///< by node: of its leaves' sizes; of a pass upwards
+    std::vector<float> losses_;         ///< [(light * groups + group) * nodes + node]
 };
 
 }  // namespace surefoot

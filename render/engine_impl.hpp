@@ -68,7 +68,7 @@ struct Engine::Impl {
     double one_more_ms GUARDED_BY(draws) = 0;
     model::EffectMask hidden GUARDED_BY(draws) = 0;  ///< by switches
     EffectLever lever GUARDED_BY(draws);
-    EffectWorth worth;                           ///< constant after open(); empty where no effects are bought
+    EffectWorth worth;                           ///< of the thread that prepares; empty where no effects are bought
     std::atomic<model::EffectMask> without = 0;  ///< PreparedFrame::without of the next sets
     std::atomic<float> with_effects{1};          ///< time of forms and bought effects together, as a multiple of the forms'
     std::atomic<float> light_hour{std::numeric_limits<float>::quiet_NaN()};  ///< of set_light()

@@ -45,6 +45,16 @@ std::vector<const EffectModule*> modules_of(model::EffectMask mask) {
     return out;
 }
 
+/// Those that the processor can shade. Sorted once: points are shaded by the hundred thousand.
+std::span<const EffectModule* const> lights_in_order() {
+    static const std::vector<const EffectModule*> lights = [] {
+        std::vector<const EffectModule*> all = modules_of(~model::EffectMask{0});
+        all.erase(std::remove_if(all.begin(), all.end(), [](const auto* module) { return module->light == nullptr; }), all.end());
+        return all;
+    }();
+    return lights;
+}
+
 }  // namespace
 
 std::vector<model::EffectPrice> usual_prices() {
@@ -56,13 +66,8 @@ std::vector<model::EffectPrice> usual_prices() {
 
 vec3 light_of(const SurfacePoint& point, model::EffectMask mask, const model::Daylight& light) {
     SurfaceLight out;
-    std::array<const EffectModule*, model::effect_count> in_order{};
-    std::size_t count = 0;
-    for (const EffectModule& module : all_effects())
-        if ((mask & module.bit) != 0 && module.light != nullptr) in_order[count++] = &module;
-    std::stable_sort(in_order.begin(), in_order.begin() + static_cast<std::ptrdiff_t>(count),
-                     [](const auto* a, const auto* b) { return a->order < b->order; });
-    for (std::size_t i = 0; i < count; ++i) in_order[i]->light(point, light, out);
+    for (const EffectModule* module : lights_in_order())
+        if ((mask & module->bit) != 0) module->light(point, light, out);
     return out.lit;
 }
 

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "tests/gl/small_models.hpp"
+#include "tests/select/count_malloc.hpp"
 
 namespace surefoot {
 namespace {
@@ -16,7 +18,8 @@ using test::SmallModel;
 
 constexpr std::array<float, 3> sky{0.5F, 0.6F, 0.7F};
 
-float loss_at(const EffectWorth& worth, std::size_t group, std::size_t node, float hour) {
+float loss_at(const EffectWorth& made, std::size_t group, std::size_t node, float hour) {
+    EffectWorth worth = made;  // nothing is worked out yet, or other hours are
     const prepare::EffectLoss loss = worth.at(hour)[group];
     return loss.before[node] + loss.between * (loss.after[node] - loss.before[node]);
 }
@@ -38,7 +41,7 @@ TEST(EffectWorth, IsTheMeanSquaredDifferenceOfTheColours) {
     const auto lit = small.square(small.material(test::plain(0.5F, 0.4F, 0.2F, 1, effect_sun | effect_fog)), test::at(0, 0, -3));
     const auto bare = small.square(small.material(test::plain(0.5F, 0.4F, 0.2F)), test::at(5, 0, -3), 2);
     const model::Model m = small.finish();
-    const EffectWorth worth(m, groups_of(std::vector<model::EffectMask>{effect_sun, effect_fog}), {}, sky);
+    EffectWorth worth(m, groups_of(std::vector<model::EffectMask>{effect_sun, effect_fog}), {}, sky);
     ASSERT_TRUE(worth.any());
     // The square faces +z: half way from ground to sky, and the sun by its z.
     const dvec3 colour(0.5F, 0.4F, 0.2F), fog(0.5F, 0.6F, 0.7F);
@@ -87,6 +90,35 @@ TEST(EffectWorth, CountsForMoreWhereAllIsDark) {
     // A light of a quarter on a colour of 0.1. Beside a bright thing that is the same by night, hardly anything is darker.
     EXPECT_NEAR(loss(1), 0.00064, 0.00003);
     EXPECT_GT(loss(0), 3 * loss(1));
+}
+
+/// As a day goes on and back, lights are worked out ahead; at a jump they are at once. Neither changes what is returned.
+TEST(EffectWorth, IsTheSameHoweverTheDayGoesAndAllocatesNothing) {
+    SmallModel small;
+    const auto material = small.material(test::plain(0.5F, 0.4F, 0.2F, 1, effect_sun | effect_lamps));
+    for (int i = 0; i < 700; ++i) small.square(material, test::at(3 * i, 0, -3));
+    model::Model m = small.finish();
+    m.lamp_light.assign(m.vertices.size(), {{255, 255, 128, 0}, {}});
+    m.light.max_lamp_light = 0.5F;
+    std::vector<double> hours;
+    for (int hour = 0; hour <= 24; ++hour) hours.push_back(hour);
+    const EffectWorth fresh(m, groups_of(std::vector<model::EffectMask>{effect_sun, effect_lamps}), hours, sky);
+    for (const float step : {0.25F, -0.4F, 7.3F}) {
+        EffectWorth day = fresh;
+        std::uint64_t allocated = 0;
+        for (int i = 0; i < 120; ++i) {
+            const float hour = std::fmod(48.0F * 24 + 12 + step * static_cast<float>(i), 24.0F);
+            const std::uint64_t before = test::allocations();
+            const auto losses = day.at(hour);
+            allocated += test::allocations() - before;
+            for (const std::size_t group : {0U, 1U}) {
+                const prepare::EffectLoss& loss = losses[group];
+                ASSERT_EQ(loss.before[5] + loss.between * (loss.after[5] - loss.before[5]), loss_at(fresh, group, 5, hour))
+                    << hour;
+            }
+        }
+        EXPECT_EQ(allocated, 0U);
+    }
 }
 
 /// Of 31 triangles one alone is lit by lamps: what the leaf loses without them.
