@@ -141,7 +141,7 @@ constexpr std::size_t nodes_ahead = 256;  // in a call: a fraction of a millisec
 std::vector<EffectGroup> groups_of(std::span<const model::EffectMask> switches) {
     std::vector<EffectGroup> groups;
     for (const model::EffectMask mask : switches) {
-        model::EffectMask own = mask;
+        model::EffectMask own = mask & ~model::effect_moving_shadow;  // its map is an item by itself
         for (const model::EffectMask other : switches)
             if (other != mask && (other & ~mask) == 0) own &= ~other;
         groups.push_back({mask, own});

@@ -67,6 +67,8 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->moving = model::MovingNodes(impl->model);
     impl->restless = restless_nodes(impl->model, impl->moving);
     impl->poses = model::MotionPoses(impl->model);
+    if (impl->device->receives_shadows()) impl->shadow = MovingShadow(impl->model);
+    impl->light = model::daylight_of_model(impl->model.sun_direction, impl->model.light);
     const std::size_t max_drawn = std::max<std::size_t>(candidates * 2, impl->unprepared.capacity());
     impl->drawn.reserve(max_drawn);
     impl->culled.reserve(candidates);
@@ -262,6 +264,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.prepay_resolution(prepared);
     const select::SelectInput input = e.input_of(prepared, budget_us, correction, target_error_rad);
     e.offer_effects(prepared, select::Budget(input).room_us());
+    e.offer_shadow(prepared);
     e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
     e.one_more_ms = e.gain_of_one_more_ms(input);
@@ -273,6 +276,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
     e.take_filter();
     e.take_effects(prepared);
+    e.shadow_due = e.shadow.any() && e.was_bought({select::ItemKind::refresh, Impl::shadow_item});
     if (e.filtered || e.lever.shown != 0) e.price_slices();
     return e.cut;
 }
@@ -300,6 +304,7 @@ void Engine::set_light(const model::Daylight& light, float hour) {
     e.draws.plays();
     e.device->draws.plays();
     e.device->set_light(light);
+    e.light = light;
     e.watch.forget();
     e.rest_picture.leave();
 }
@@ -311,6 +316,8 @@ void Engine::set_time(double time_s) {
     e.device->draws.plays();
     const double shown_s = e.options.motion ? time_s : 0;
     e.poses.set_time(shown_s);
+    e.moving.set_span(shown_s, shown_s);
+    e.time_s = std::isfinite(shown_s) ? shown_s : 0;
     e.device->set_time(shown_s);
 }
 
@@ -327,6 +334,7 @@ void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> ite
     impl_->draws.plays();
     impl_->watch.forget();  // another picture is shown
     impl_->rest_picture.leave();
+    device.show_shadow(std::exchange(impl_->shadow_unbudgeted, false));
     device.set_filter(filter == rt::TextureFilter::automatic ? impl_->best_filter : filter);
     device.hide_effects(impl_->hidden);
     device.begin_frame(pose, resolution);

@@ -112,7 +112,8 @@ struct SubmitReport {
     /// The picture that was shown stays, or full detail replaces it (RestPicture). slices, predicted_us and times are of what was
     /// drawn beside it; all else describes the shown picture.
     bool at_rest = false;
-    std::uint32_t rest_samples = 0;  ///< of the shown picture: 1 is full detail; 0: it is a cut
+    std::uint32_t rest_samples = 0;                       ///< of the shown picture: 1 is full detail; 0: it is a cut
+    bool shadow_refreshed = false, shadow_shown = false;  ///< the shadow map of what moves: bought by this frame; in its picture
     float floor_share = 0;  ///< of the drawn pixels, as estimated: those in the cheapest forms of nodes that have finer ones
 };
 
@@ -185,6 +186,9 @@ public:
     /// Maximum number of items in drawn() and culled() together.
     [[nodiscard]] std::size_t drawn_capacity() const;
 
+    /// The next draw_unbudgeted() draws the shadow map of what moves and shows it; without this call its pictures have no such
+    /// shadow. False: there is none.
+    bool refresh_shadow(const Pose& pose);
     /// Draws items without a budget, for images of reports: full_detail(), or a remembered set. `filter`: automatic is the best
     /// that frames may have.
     void draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution = 1,

@@ -35,7 +35,8 @@ std::vector<model::Index> restless_nodes(const model::Model& model, const model:
 }
 
 void Engine::Impl::reserve_effects() {
-    const std::vector<EffectGroup> groups = groups_of(options.device.switches);
+    std::vector<EffectGroup> groups = groups_of(options.device.switches);
+    std::erase_if(groups, [](const EffectGroup& group) { return group.own == 0; });
     lever.count = std::min(groups.size(), lever.groups.size());
     std::copy_n(groups.begin(), lever.count, lever.groups.begin());
     worth = EffectWorth(model, lever.all(), options.effect_hours, options.device.sky);

@@ -16,6 +16,7 @@
 #include "render/floor_watch.hpp"
 #include "render/model/moving.hpp"
 #include "render/model/view.hpp"
+#include "render/moving_shadow.hpp"
 #include "render/prepare/resolution.hpp"
 #include "render/rest.hpp"
 #include "render/select/frame_profile.hpp"
@@ -60,9 +61,17 @@ struct Engine::Impl {
     double forecast_us GUARDED_BY(draws) = 0;      ///< end of this frame, by the last check that let a slice be drawn in full
     float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from
 
-    model::MovingNodes moving GUARDED_BY(draws);
-    model::MotionPoses poses GUARDED_BY(draws);  ///< at the time of the next picture
-    std::vector<model::Index> restless;          ///< nodes whose pictures change with the time; not those below them
+    model::MotionPoses poses GUARDED_BY(draws);        ///< at the time of the next picture
+    std::vector<model::Index> restless;                ///< nodes whose pictures change with the time; not those below them
+    model::MovingNodes moving GUARDED_BY(draws);       ///< at the time of the next picture
+    double time_s GUARDED_BY(draws) = 0;               ///< of the next picture
+    model::Daylight light GUARDED_BY(draws);           ///< of the next picture
+    MovingShadow shadow GUARDED_BY(draws);             ///< none where nothing receives one
+    ShadowEye shadow_eye GUARDED_BY(draws);            ///< for which it is planned
+    bool shadow_due GUARDED_BY(draws) = false;         ///< the planned map was bought
+    bool shadow_shown GUARDED_BY(draws) = false;       ///< by the last picture
+    bool shadow_unbudgeted GUARDED_BY(draws) = false;  ///< draw_unbudgeted() is to show it
+    static constexpr std::uint32_t shadow_item = 0;    ///< the refresh that it is
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
@@ -131,6 +140,9 @@ struct Engine::Impl {
     [[nodiscard]] double beside_us() const REQUIRES(draws) {
         return use_last ? 0.0 : cut.bought.cost_us - (filtered ? static_cast<double>(filter_us) : 0.0) - lever.spent_us;
     }
+    [[nodiscard]] ShadowScene shadow_scene() const REQUIRES(draws);
+    void offer_shadow(const prepare::PreparedFrame& set) REQUIRES(draws);
+    void begin_shadow(const Pose& pose, SubmitReport& report) REQUIRES(draws);
     void prepay_resolution(const prepare::PreparedFrame& set) REQUIRES(draws);
     void report_items(SubmitReport& report) const REQUIRES(draws);
     [[nodiscard]] bool in_time(const Progression& p, const SubmitLimits& limits, double start_us) REQUIRES(draws);

@@ -38,6 +38,7 @@ bool Engine::Impl::in_view(model::Index node) {
 /// Whether anything moves, now or later, that the pose may see.
 bool Engine::Impl::motion_in_view(const Pose& pose) const {
     if (restless.empty() || !options.motion) return false;
+    if (shadow_shown) return true;  // it may be in view without what casts it
     // A moved sample sees a pixel more.
     const double pixel_rad = model::pixel_angle(pose, options.device.viewport);
     const model::Frustum wide =
@@ -259,6 +260,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
     e.device->set_filter(e.filtered && !e.use_last ? e.best_filter : e.device->filter());
     if (e.lever.count > 0) e.device->hide_effects(e.hidden | e.lever.left_out);
+    e.begin_shadow(pose, report);
     e.device->begin_frame(pose, e.drawn_resolution);
     if (e.use_last) {
         e.submit_last(pose, limits, start_us, report);

@@ -20,6 +20,7 @@
 #include "render/bake/limits.hpp"
 #include "render/bake/materials.hpp"
 #include "render/bake/motions.hpp"
+#include "render/bake/moving_shadow.hpp"
 #include "render/bake/picture_loss.hpp"
 #include "render/bake/proxies.hpp"
 #include "render/bake/quality.hpp"
@@ -403,6 +404,7 @@ void BakeContext::find_effects() {
     keep_used_effects(model, light.openness.copies);
     model.effects = bake::find_effects(model, material_triangles, light);
     add_sun_reason(scene, options.sun, model.effects);
+    add_moving_shadow(model);
 }
 
 /// Only lit scenes: rays for what light is measured from, and meshes that are cut for it.

@@ -36,6 +36,17 @@ std::span<const EffectModule> all_effects() {
 
 namespace {
 
+/// The light without the sun's own part: all modules of light once more, in a scope in which the sun is dark.
+std::string sunless_code(std::span<const EffectModule* const> modules) {
+    std::string code =
+        "    vec3 sunless;\n"
+        "    {\n"
+        "    vec3 lit = vec3(1.0), by_sun = vec3(0.0), sun_light = vec3(0.0);\n";
+    for (const EffectModule* const module : modules)
+        if (module->is_light) code += module->vertex_code;
+    return code + "    sunless = lit;\n    }\n";
+}
+
 /// The effects of a mask, in the order of application.
 std::vector<const EffectModule*> modules_of(model::EffectMask mask) {
     std::vector<const EffectModule*> out;
@@ -105,15 +116,17 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
     std::string fragment_declarations;
     std::string fragment_code;
     std::string fragment_code_samples;
-    std::vector<gl::UniformSource> uniforms;
+    gl::ProgramSource source;
     bool covers = false, has_light = false, varies = false;
-    for (const EffectModule* const one : modules_of(mask)) {
+    const std::vector<const EffectModule*> modules = modules_of(mask);
+    for (const EffectModule* const one : modules) {
         const EffectModule& module = *one;
-        if (module.is_light && !has_light) {
+        if ((module.is_light || module.needs_sunless) && !has_light) {
             vertex_declarations += normal_declarations;
             vertex_code += normal_code;
             has_light = true;
         }
+        if (module.needs_sunless) vertex_code += sunless_code(modules);
         vertex_declarations += module.vertex_declarations;
         vertex_code += module.vertex_code;
         fragment_declarations += module.fragment_declarations;
@@ -122,14 +135,13 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
         fragment_code_samples += other ? module.fragment_code_samples : module.fragment_code;
         covers = covers || other;
         varies = varies || module.varies_colour;
-        uniforms.insert(uniforms.end(), module.uniforms.begin(), module.uniforms.end());
+        source.uniforms.insert(source.uniforms.end(), module.uniforms.begin(), module.uniforms.end());
+        source.samplers.insert(source.samplers.end(), module.samplers.begin(), module.samplers.end());
     }
     if (has_light) vertex_code += light_code;
     // A colour that no effect varies over the triangle needs no interpolation.
     const std::string flat = varies ? "" : "flat ";
-    gl::ProgramSource source;
     source.name = effects_text(mask);
-    source.uniforms = std::move(uniforms);
     source.vertex =
         "#version 430 core\n"
         "in vec3 position;\n"

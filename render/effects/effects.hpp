@@ -45,9 +45,12 @@ struct EffectModule {
     /// In place of fragment_code where pixels have several samples; sets `opacity` to the covered share. Empty: fragment_code.
     std::string_view fragment_code_samples = {};
     std::span<const gl::UniformSource> uniforms = {};  ///< that its pieces declare
-    bool varies_colour = false;                        ///< vertices of a triangle may have different colours by it
+    std::span<const gl::SamplerSource> samplers = {};
+    bool varies_colour = false;  ///< vertices of a triangle may have different colours by it
     /// vertex_code may read the normal `n` and whether it was `turned` to the eye; write `lit`, and of it the share `by_sun`.
     bool is_light = false;
+    /// vertex_code may read `n`, `lit` and `sunless`: the light without the sun's own part, as all modules with light leave it.
+    bool needs_sunless = false;
     int order = 0;  ///< of application; effects of the same order go by bit
 
     /// Its cost adds to that of a state class, and calibration measures it on this one. 0: grids of state classes hold its cost.

@@ -4,6 +4,12 @@
 
 namespace surefoot::effects {
 
+namespace {
+
+constexpr std::array<gl::SamplerSource, 1> texture_samplers{{{"base_colour", gl::material_unit}}};
+
+}  // namespace
+
 constexpr EffectModule texture{
     .bit = model::effect_texture,
     .name = "texture",
@@ -16,6 +22,7 @@ constexpr EffectModule texture{
     .vertex_code = "    v_uv = uv;\n    v_layer = texture_layer;\n",
     .fragment_declarations = "in vec2 v_uv;\nflat in float v_layer;\nuniform sampler2DArray base_colour;\n",
     .fragment_code = "    colour *= texture(base_colour, vec3(v_uv, v_layer));\n",
+    .samplers = texture_samplers,
     .changes_nothing = [](const MaterialUse&) { return true; },
 };
 const EffectModule texture_module = texture;

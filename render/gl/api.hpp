@@ -14,6 +14,7 @@ namespace surefoot::gl {
 
 // name without "gl", type of its pointer
 #define SUREFOOT_GL_FUNCTIONS(X)                                               \
+    X(ActiveTexture, PFNGLACTIVETEXTUREPROC)                                   \
     X(AttachShader, PFNGLATTACHSHADERPROC)                                     \
     X(BeginQuery, PFNGLBEGINQUERYPROC)                                         \
     X(BindBuffer, PFNGLBINDBUFFERPROC)                                         \

@@ -33,19 +33,48 @@ struct DrawItem {
     model::Index rep = 0;
 };
 
+/// Sides of the shadow map, in texels.
+constexpr std::uint32_t shadow_map_px = 512;
+
+/// A depth picture as the sun sees it: parallel, its depths 1 at the side of the sun and above 0 at all that casts.
+struct ShadowView {
+    dvec3 origin{0.0};       ///< world
+    mat4 from_origin{1.0F};  ///< from positions relative to `origin` to -1..1, -1..1 and 0..1
+    vec3 towards{0, 1, 0};   ///< the sun, unit
+    float texel_m = 0;       ///< side of a texel
+    float depth_m = 1;       ///< from depth 0 to depth 1
+};
+
+/// Where the shadow map stands, as programs read it. Lets all be in the sun at first.
+struct ShadowPlace {
+    mat4 from_eye = mat4(vec4(0), vec4(0), vec4(0), vec4(0.5F, 0.5F, 2, 1));  ///< to 0..1, 0..1 and a depth
+    vec3 towards{0, 1, 0};
+    float texel = 0;  ///< in depth
+};
+
 /// What programs may read of the moment that a picture shows.
 struct PictureMoment {
     model::Daylight light;  ///< `background` is the colour itself
     double time_s = 0;      ///< of what moves
     dvec3 eye{0.0};         ///< in the world, m
     float pixel_rad = 0;    ///< angle of a pixel in the middle
+    ShadowPlace shadow = {};
 };
 
-/// A uniform of a program: its GLSL name, of `float` or `vec3`, and what writes its 1 or 3 floats. On the frame thread.
+/// A uniform of a program: its GLSL name, of `float`, `vec3` or `mat4`, and what writes its 1, 3 or 16 floats. On the frame
+/// thread.
 struct UniformSource {
     const char* name;
     int components;
     void (*write)(const PictureMoment& moment, float* to);
+};
+
+/// Texture units: the pictures of materials, and the shadow map.
+constexpr int material_unit = 0, shadow_unit = 1;
+/// A sampler of a program, and the texture unit that it reads.
+struct SamplerSource {
+    const char* name;
+    int unit;
 };
 
 /// GLSL of one state class. render/effects makes it, so that this room knows no effect.
@@ -54,7 +83,8 @@ struct ProgramSource {
     std::string name{};  ///< of the state class, for people: "texture sun"
     /// In place of `fragment` where pixels have several samples: its alpha is the covered share of the pixel. Empty: `fragment`.
     std::string fragment_samples{};
-    std::vector<UniformSource> uniforms{};  ///< those that it declares, but `view_projection` and samplers
+    std::vector<UniformSource> uniforms{};  ///< those that it declares, but `view_projection`
+    std::vector<SamplerSource> samplers{};
 };
 using ProgramFactory = std::function<ProgramSource(model::EffectMask)>;
 
@@ -171,6 +201,15 @@ public:
     virtual void set_light(const model::Daylight& light) REQUIRES(draws) { static_cast<void>(light); }
     /// The time at which moving placements are drawn in the pictures that begin from now on; after load() it is 0.
     virtual void set_time(double time_s) REQUIRES(draws) { static_cast<void>(time_s); }
+    /// Whether the model has surfaces that receive shadows of what moves (effect_moving_shadow).
+    [[nodiscard]] virtual bool receives_shadows() const { return false; }
+    /// The next begin_frame() draws the shadow map anew, with these items at their places of its time. They must live until
+    /// then. Blended parts cast none.
+    virtual void refresh_shadow(const ShadowView& view, std::span<const DrawItem> casters) REQUIRES(draws) {
+        static_cast<void>(view), static_cast<void>(casters);
+    }
+    /// Whether the pictures that begin from now on show the shadows of the map. Not after load().
+    virtual void show_shadow(bool shown) REQUIRES(draws) { static_cast<void>(shown); }
     /// `resolution`: share of the picture's width and height at which it is drawn, then enlarged once by finish_frame(). The step
     /// of model::resolution_steps that is not above it, or the least; NaN, zero and below mean 1.
     virtual void begin_frame(const Pose& pose, float resolution) REQUIRES(draws) = 0;

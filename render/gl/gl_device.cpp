@@ -126,6 +126,7 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     auto resources = load_resources(gl_, model, find_programs(), tables_.textures, programs, frame_, how);
     if (!resources) return resources.error();
     resources_ = std::move(*resources);
+    if (auto shadow = load_shadow(model, programs); !shadow) return shadow.error();
     set_filter_ = filter();
     detail_step_ = 0;
     light_ = model::daylight_of_model(model.sun_direction, model.light);
@@ -207,6 +208,11 @@ void GlDevice::warm_up_passes() {
     // A driver may compile the enlarging pass for each size.
     for (const float resolution : model::resolution_steps) {
         begin_frame(Pose{}, resolution);
+        finish_frame();
+    }
+    if (!caster_kinds_.empty()) {
+        refresh_shadow({}, caster_kinds_);
+        begin_frame(Pose{});
         finish_frame();
     }
     if (rest_support() != RestSupport::none) {

@@ -13,6 +13,7 @@
 #include "render/gl/resources.hpp"
 #include "render/gl/rest_targets.hpp"
 #include "render/gl/sample_targets.hpp"
+#include "render/gl/shadow_map.hpp"
 #include "render/gl/targets.hpp"
 #include "render/gl/window_fit.hpp"
 #include "render/model/moving.hpp"
@@ -37,6 +38,9 @@ public:
     void hide_effects(model::EffectMask hidden) override REQUIRES(draws);
     void set_light(const model::Daylight& light) override REQUIRES(draws) { light_ = light; }
     void set_time(double time_s) override REQUIRES(draws) { time_s_ = time_s; }
+    [[nodiscard]] bool receives_shadows() const override { return shadow_.framebuffer != 0; }
+    void refresh_shadow(const ShadowView& view, std::span<const DrawItem> casters) override REQUIRES(draws);
+    void show_shadow(bool shown) override REQUIRES(draws) { shadow_shown_ = shown; }
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
@@ -105,7 +109,11 @@ private:
     void prepare_presenting() REQUIRES(draws);
     void fill_window() REQUIRES(draws);
     void fill_pixel_rows(const PixelRows& rows) REQUIRES(draws);
+    Result<void> load_shadow(const model::Model& model, const ProgramFactory& programs) REQUIRES(draws);
+    void draw_shadow_map() REQUIRES(draws);
+    void place_shadow() REQUIRES(draws);
     [[nodiscard]] std::uint32_t program_of(const draw::DrawPart& part) const REQUIRES(draws) {
+        if (draws_shadow_) return caster_programs_[part.program];
         return without_[variant_ * tables_.masks.size() + part.program];
     }
     /// As it is drawn now: a switchable effect that is left out is none.
@@ -113,6 +121,7 @@ private:
         return part.blended && (off_ & model::effect_blend) == 0;
     }
     [[nodiscard]] std::uint32_t texture_of(const draw::DrawPart& part) const REQUIRES(draws) {
+        if (draws_shadow_ && (tables_.masks[part.program] & model::effect_alpha_mask) == 0) return model::none;
         return (off_ & model::effect_texture) != 0 ? model::none : part.texture;
     }
     [[nodiscard]] GeometryBuffers geometry() const REQUIRES(draws);
@@ -153,10 +162,16 @@ private:
 
     Pose pose_ GUARDED_BY(draws);
     mat4 view_projection_ GUARDED_BY(draws){1.0F};
-    model::Daylight light_ GUARDED_BY(draws);     ///< of the next picture
-    double time_s_ GUARDED_BY(draws) = 0;         ///< of the next picture
-    PictureMoment shown_ GUARDED_BY(draws);       ///< of this picture
-    model::MotionPoses poses_ GUARDED_BY(draws);  ///< of this picture
+    model::Daylight light_ GUARDED_BY(draws);                       ///< of the next picture
+    double time_s_ GUARDED_BY(draws) = 0;                           ///< of the next picture
+    PictureMoment shown_ GUARDED_BY(draws);                         ///< of this picture
+    model::MotionPoses poses_ GUARDED_BY(draws);                    ///< of this picture
+    ShadowMap shadow_;                                              ///< none where no program reads one
+    std::vector<std::uint32_t> caster_programs_ GUARDED_BY(draws);  ///< that draw it, by program of a part
+    std::vector<DrawItem> caster_kinds_ GUARDED_BY(draws);          ///< one of each such program, to warm it up
+    ShadowView shadow_view_ GUARDED_BY(draws);                      ///< of the map as it is drawn, or will be
+    std::span<const DrawItem> casters_ GUARDED_BY(draws);           ///< of the map that waits to be drawn; empty: none does
+    bool shadow_shown_ GUARDED_BY(draws) = false, draws_shadow_ GUARDED_BY(draws) = false;
     std::uint64_t frame_number_ GUARDED_BY(draws) = 0;
     FrameStats stats_ GUARDED_BY(draws);
     std::vector<Pending> pending_ GUARDED_BY(draws), blended_ GUARDED_BY(draws);

@@ -69,6 +69,8 @@ void GlDevice::start_picture(const Pose& pose) {
     shown_ = {light_, time_s_, pose.position, static_cast<float>(model::pixel_angle(pose, options_.viewport))};
     shown_.light.background *= vec3(options_.sky[0], options_.sky[1], options_.sky[2]);
     poses_.set_time(time_s_);
+    if (!casters_.empty()) draw_shadow_map();
+    if (shadow_.framebuffer != 0) place_shadow();
 }
 
 void GlDevice::draw_into(const Target& target) {
@@ -106,7 +108,8 @@ void GlDevice::set_coverage(bool on) {
 
 GlDevice::State GlDevice::state_of(const Pending& pending) const {
     const draw::DrawPart& part = tables_.parts[pending.part];
-    return {program_of(part), texture_of(part), draw::culling(part, tables_.placements[tables_.reps[pending.rep].placement])};
+    const draw::Placed& placed = tables_.placements[tables_.reps[pending.rep].placement];
+    return {program_of(part), texture_of(part), draws_shadow_ ? draw::Culling::none : draw::culling(part, placed)};
 }
 
 void GlDevice::draw(std::span<const DrawItem> items) { draw_parts(items, Parts::all); }

@@ -49,6 +49,9 @@ public:
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
     void hide_effects(model::EffectMask hidden) override REQUIRES(draws) { hidden_ = left_out(options_.switches, hidden); }
+    [[nodiscard]] bool receives_shadows() const override {
+        return model_ != nullptr && (model_->called_for() & model::effect_moving_shadow) != 0;
+    }
     void bind() override ASSERT_CAPABILITY(draws) {}
     void release() override RELEASE(draws) NO_THREAD_SAFETY_ANALYSIS {}
 

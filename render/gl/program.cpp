@@ -135,10 +135,11 @@ Result<Program> make_program(const Api& gl, model::EffectMask mask, ProgramSourc
         if (location >= 0) program.uniforms.push_back({location, uniform});
     }
     program.reads_sun_seen = gl.GetAttribLocation(program.id, "sun_seen") >= 0;
-    const GLint sampler = gl.GetUniformLocation(program.id, "base_colour");
-    if (sampler >= 0) {
+    for (const SamplerSource& sampler : program.source.samplers) {
+        const GLint location = gl.GetUniformLocation(program.id, sampler.name);
+        if (location < 0) continue;
         gl.UseProgram(program.id);
-        gl.Uniform1i(sampler, 0);
+        gl.Uniform1i(location, sampler.unit);
     }
     make_vertex_array(gl, program, buffers);
     return program;
@@ -146,12 +147,17 @@ Result<Program> make_program(const Api& gl, model::EffectMask mask, ProgramSourc
 
 void write_uniforms(const Api& gl, const Program& program, const PictureMoment& moment) {
     for (const BoundUniform& uniform : program.uniforms) {
-        std::array<float, 3> value{};
+        std::array<float, 16> value{};
         uniform.source.write(moment, value.data());
-        if (uniform.source.components == 1) {
-            gl.Uniform1f(uniform.location, value[0]);
-        } else {
-            gl.Uniform3f(uniform.location, value[0], value[1], value[2]);
+        switch (uniform.source.components) {
+            case 1:
+                gl.Uniform1f(uniform.location, value[0]);
+                break;
+            case 3:
+                gl.Uniform3f(uniform.location, value[0], value[1], value[2]);
+                break;
+            default:
+                gl.UniformMatrix4fv(uniform.location, 1, GL_FALSE, value.data());
         }
     }
 }

@@ -115,6 +115,8 @@ Result<void> write_pages(AtomicFile& out, std::span<const std::byte> payload, Pa
 std::vector<EffectFinding> looked_for(const std::vector<EffectFinding>& findings) {
     std::vector<EffectFinding> out;
     std::copy_if(findings.begin(), findings.end(), std::back_inserter(out), [](const EffectFinding& f) { return f.looked_for; });
+    // Files without the newer effects are as before there were any, and earlier programs open them.
+    while (!out.empty() && out.back().bit > effect_fog && !out.back().called_for) out.pop_back();
     return out;
 }
 
@@ -315,7 +317,10 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
             take.list(m.effects);
             if (m.effects.size() < static_cast<std::size_t>(first_effect_count)) break;  // validate() refuses it
             for (auto e = m.effects.size(); e < static_cast<std::size_t>(effect_count); ++e)
-                m.effects.push_back({1U << e, false, 0, "an older bake did not look for it", false});
+                m.effects.push_back({1U << e, false, 0,
+                                     1U << e > effect_fog ? "nothing calls for it, or an older bake did not look for it"
+                                                          : "an older bake did not look for it",
+                                     false});
             break;
         case losses_section:
             walk::fields(take, m.colours);

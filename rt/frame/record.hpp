@@ -98,7 +98,8 @@ struct FrameRecord {
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
     ShownBy shown_by = ShownBy::nothing;
     bool at_rest = false;  ///< no cut was drawn: the shown picture stays, or full detail replaces it
-    ShownLight light;      ///< of the walk's frames
+    bool shadow_refreshed = false, shadow_shown = false;    ///< the shadow map of what moves: bought by the frame; in its picture
+    ShownLight light;                                       ///< of the walk's frames
     std::array<DroppedPart, switch_count> dropped_parts{};  ///< of the light, by light_switches; where frames buy them
     bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss
     Cause cause = Cause::none;

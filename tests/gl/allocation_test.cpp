@@ -115,6 +115,50 @@ TEST(Allocation, a_frame_with_several_samples_a_pixel_makes_none_of_its_own) {
     EXPECT_EQ(allocations_of_a_frame(**device, scene), 0);
 }
 
+TEST(Allocation, a_shadow_map_makes_none_and_compiles_nothing) {
+    if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
+    test::SmallModel small;
+    model::Material leaf = test::plain(1, 1, 1, 1, model::effect_texture | model::effect_alpha_mask);
+    leaf.texture = small.texture({255, 0, 0, 255}, {0, 0, 255, 0}, 64);
+    const auto lawn = small.material(test::plain(0, 1, 0, 1, model::effect_sun | model::effect_moving_shadow));
+    const auto red = small.material(test::plain(1, 0, 0)), leaves = small.material(leaf);
+    Counted scene;
+    for (int i = 0; i < 99; ++i) {
+        const auto node = small.square(i % 3 == 0   ? lawn
+                                       : i % 3 == 1 ? red
+                                                    : leaves,
+                                       test::at(0.02 * i - 1, 0, 8.0 - 0.01 * i), 0.1F);
+        scene.items.push_back({node, node - 1});
+    }
+    scene.model = small.finish();
+    scene.model.motions.push_back({dvec3(0), 0, 1, 1, model::none});
+    scene.model.motion_keys.emplace_back();
+    std::vector<gl::DrawItem> casters;
+    for (const gl::DrawItem& item : scene.items) {
+        if (item.node % 3 == 1) continue;
+        scene.model.placements[scene.model.reps[item.rep].placement].motion = 0;
+        casters.push_back(item);
+    }
+    gl::DeviceOptions options;
+    options.viewport = {64, 64};
+    auto device = gl::open_device(options);
+    if (!device) GTEST_SKIP() << device.error().text();
+    (*device)->draws.plays();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    ASSERT_TRUE((*device)->receives_shadows());
+    frame(**device, scene.items);
+    gl::ShadowView view;
+    view.origin = dvec3(0, 0, 7);
+    view.texel_m = 0.01F;
+    counted = 0;
+    counting = true;
+    (*device)->refresh_shadow(view, casters);
+    (*device)->show_shadow(true);
+    frame(**device, scene.items);
+    counting = false;
+    EXPECT_EQ(counted, 0);
+}
+
 TEST(Allocation, a_change_of_the_filter_makes_none_and_compiles_nothing) {
     if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
     test::SmallModel small;

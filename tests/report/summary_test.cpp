@@ -202,6 +202,7 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                                    "samples",
                                    "filter",
                                    "trilinear_frames",
+                                   "shadow_map",
                                    "shown_by",
                                    "shown_missing",
                                    "shown_interval_ms",

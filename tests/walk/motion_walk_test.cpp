@@ -48,11 +48,17 @@ struct MotionWalk : testing::Test {
 TEST_F(MotionWalk, IsAlikeAtAnyNumberOfWorkers) {
     walk::WalkRequest r = request(true, 90);
     r.workers = 1;
-    const std::string hash = test::walk(r).summary.cut_hash;
+    const auto first = test::walk(r).summary;
+    const std::string hash = first.cut_hash;
     EXPECT_FALSE(hash.empty());
+    EXPECT_GT(first.shadow_refreshes, 30U) << "shadows of what moves, in most of 90 frames";
+    EXPECT_GE(first.shadow_frames, first.shadow_refreshes);
     for (const int workers : {1, 2, 4}) {
         r.workers = workers;
-        EXPECT_EQ(test::walk(r).summary.cut_hash, hash) << workers << " workers";
+        const auto again = test::walk(r).summary;
+        EXPECT_EQ(again.cut_hash, hash) << workers << " workers";
+        EXPECT_EQ(again.shadow_refreshes, first.shadow_refreshes) << workers << " workers";
+        EXPECT_EQ(again.shadow_frames, first.shadow_frames) << workers << " workers";
     }
 }
 

@@ -25,6 +25,7 @@ struct Drawn {
 double draw_ms(const Drawn& drawn, const Pose& pose, const std::vector<gl::DrawItem>& items) {
     drawn.engine->hide_effects(drawn.effects ? 0 : ~model::EffectMask{0});
     const std::int64_t begun = rt::monotonic_ns();
+    drawn.engine->refresh_shadow(pose);
     drawn.engine->draw_unbudgeted(pose, items);
     return static_cast<double>(rt::monotonic_ns() - begun) * 1e-6;
 }

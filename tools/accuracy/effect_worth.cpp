@@ -69,6 +69,7 @@ private:
             for (const bool off : {false, true}) {
                 engine.hide_effects(off ? ~model::EffectMask{0} : 0);
                 const std::int64_t begun = rt::monotonic_ns();
+                engine.refresh_shadow(pose);
                 engine.draw_unbudgeted(pose, items);
                 if (round >= 0) {
                     ms[off ? 1 : 0].push_back(static_cast<double>(rt::monotonic_ns() - begun) * 1e-6);

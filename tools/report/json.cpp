@@ -215,6 +215,7 @@ std::string to_json(const WalkSummary& s) {
         {"samples", {{"drawn", s.samples}, {"as_requested", !s.other_samples}}},
         {"filter", rt::name_of(s.filter)},
         {"trilinear_frames", s.trilinear_frames},
+        {"shadow_map", {{"refreshes", s.shadow_refreshes}, {"shown_frames", s.shadow_frames}}},
         {"rest",
          {{"frames", s.rest_frames},
           {"full_detail_frames", s.rested_frames},

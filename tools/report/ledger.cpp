@@ -38,7 +38,7 @@ void put_dropped(fmt::memory_buffer& row, const FrameRecord& f, bool fell) {
 }
 
 // clang-format off
-constexpr std::array<Column, 90> columns = {{
+constexpr std::array<Column, 92> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -120,6 +120,8 @@ constexpr std::array<Column, 90> columns = {{
     {"hour", [](auto& r, auto& f) { if (rt::has_hour(f.light)) add(r, "{:.4f}", f.light.hour); }},
     {"dropped_parts", [](auto& r, auto& f) { put_dropped(r, f, false); }},
     {"fell_at", [](auto& r, auto& f) { put_dropped(r, f, true); }},
+    {"shadow_refreshed", [](auto& r, auto& f) { add(r, "{:d}", f.shadow_refreshed); }},
+    {"shadow_shown", [](auto& r, auto& f) { add(r, "{:d}", f.shadow_shown); }},
     {"snapped", [](auto& r, auto& f) { add(r, "{:d}", f.snapped); }},
     {"cost_scale", [](auto& r, auto& f) { add(r, "{:.4f}", f.cost_scale); }},
     {"x", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[0]); }},

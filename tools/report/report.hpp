@@ -178,8 +178,9 @@ struct WalkSummary {
     bool other_samples = false;                              ///< the driver lacks the requested number
     rt::TextureFilter filter = rt::TextureFilter::bilinear;  ///< as the last frame was drawn
     std::uint64_t trilinear_frames = 0;
-    std::uint64_t coarse_frames = 0;  ///< with a slice that the in-frame check drew coarser
-    std::uint64_t floor_frames = 0;   ///< over half of the picture fell to floor forms, although the cut before would have fitted
+    std::uint64_t shadow_refreshes = 0, shadow_frames = 0;  ///< of the shadow map of what moves: bought; pictures that show it
+    std::uint64_t coarse_frames = 0;                        ///< with a slice that the in-frame check drew coarser
+    std::uint64_t floor_frames = 0;  ///< over half of the picture fell to floor forms, although the cut before would have fitted
     /// Time between the end of drawing and the deadline, of frames below full resolution or whose value is below 0.99 or not
     /// known.
     Quantiles unused_ms;

@@ -119,6 +119,15 @@ void quality_figures(std::span<const FrameRecord* const> frames, WalkSummary& s)
         frames.begin(), frames.end(), [](const FrameRecord* f) { return f->filter == rt::TextureFilter::trilinear; }));
 }
 
+void shadow_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
+    const auto count = [&](bool FrameRecord::*what) {
+        return static_cast<std::uint64_t>(
+            std::count_if(frames.begin(), frames.end(), [&](const FrameRecord* f) { return f->*what; }));
+    };
+    s.shadow_refreshes = count(&FrameRecord::shadow_refreshed);
+    s.shadow_frames = count(&FrameRecord::shadow_shown);
+}
+
 void rest_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
     s.rest_frames = s.rested_frames = s.rest_samples = 0;
     s.rest_ms = 0;
@@ -232,6 +241,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     unused_time(frames, summary);
     resolution_figures(frames, summary);
     quality_figures(frames, summary);
+    shadow_figures(frames, summary);
     rest_figures(frames, summary);
     summary.dropped_parts = dropped_parts(frames);
     summary.shown = shown_figures(frames, summary.late_policy);

@@ -21,10 +21,15 @@ model::EffectMask hidden_effects(const rt::Switches& on) {
 
 namespace {
 
+/// Shadows of what moves go with those of what stands.
+model::EffectMask with_moving(model::EffectMask hidden) {
+    return (hidden & model::effect_shadow) != 0 ? hidden | model::effect_moving_shadow : hidden;
+}
+
 model::EffectMask group_of(const rt::Switch& one) {
     rt::Switches without;
     without.*one.on = false;
-    return hidden_effects(without);
+    return with_moving(hidden_effects(without));
 }
 
 }  // namespace
@@ -47,7 +52,7 @@ float hour_at(const config::Settings& settings, double walk_s) {
 }
 
 void show_light(Engine& engine, const rt::ShownLight& light) {
-    engine.hide_effects(hidden_effects(light.on));
+    engine.hide_effects(with_moving(hidden_effects(light.on)));
     if (rt::has_hour(light))
         engine.set_light(model::daylight_at(static_cast<double>(light.hour), engine.model().light), light.hour);
 }

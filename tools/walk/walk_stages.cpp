@@ -399,6 +399,8 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.bought_items = report_.bought_items;
     record.refused_items = report_.refused_items;
     record.bought_us = static_cast<float>(report_.bought_us);
+    record.shadow_refreshed = report_.shadow_refreshed;
+    record.shadow_shown = report_.shadow_shown;
     record.accuracy = accuracy_of(report_.worst_error_rad);
     record.guaranteed_accuracy = static_cast<float>(report_.promised_rad > 0 ? 1 / report_.promised_rad : 0);
     record.reached_accuracy = accuracy_of(report_.worst_weighted_rad);

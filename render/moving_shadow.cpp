@@ -1,0 +1,216 @@
+// Planning and judging the shadow map (moving_shadow.hpp).
+#include "render/moving_shadow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot {
+
+namespace {
+
+using model::Index;
+
+constexpr float min_sun = 0.02F;        // of the sun's light and of its height: below, nothing has a shadow that shows
+constexpr double min_distance_m = 1;    // distances of pixels are no less
+constexpr double max_followed_m = 100;  // of a shadow, from what casts it
+constexpr float pass_ns_per_texel = 2;  // of an empty map, as on llvmpipe with two cores: nothing calibrates it
+constexpr double rim_texels = 4;        // empty ones round the map: what is beyond them is in the sun
+
+dvec3 box_corner(const Box& box, unsigned c) {
+    return {(c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y, (c & 4U) != 0 ? box.max.z : box.min.z};
+}
+
+bool shines(const model::Daylight& light) {
+    return std::max({light.sun_light.r, light.sun_light.g, light.sun_light.b}) > min_sun && light.sun_direction.y > min_sun;
+}
+
+double px_per_m(const ShadowEye& eye, const Box& box) {
+    return 1 / (std::max(min_distance_m, box.distance(eye.pose.position)) * model::pixel_angle(eye.pose, eye.viewport));
+}
+
+/// The box and its shadow down to the bottom of the world, as far as it is followed.
+Box with_shadow(const ShadowScene& scene, const Box& box) {
+    const dvec3 towards(scene.light.sun_direction);
+    const double down_m = std::max(0.0, box.max.y - scene.model.nodes[0].box.min.y);
+    const dvec3 way = -towards * std::min(max_followed_m, down_m / std::max(towards.y, static_cast<double>(min_sun)));
+    Box both = box;
+    both.grow(box.min + way);
+    both.grow(box.max + way);
+    return both;
+}
+
+}  // namespace
+
+MovingShadow::MovingShadow(const model::Model& model) {
+    if (model.motions.empty() || (model.called_for() & model::effect_moving_shadow) == 0) return;
+    casts_.assign(model.reps.size(), false);
+    for (std::size_t r = 0; r < model.reps.size(); ++r) {
+        const model::Representation& rep = model.reps[r];
+        for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p)
+            if ((model.materials[model.parts[p].material].effects & model::effect_blend) == 0) casts_[r] = true;
+    }
+    for (Index n = 0; n < model.nodes.size(); ++n) {
+        const model::Node& node = model.nodes[n];
+        const Index motion = model::motion_of(model, node);
+        if (motion == model::none || !casts_[node.first_rep + node.rep_count - 1]) continue;
+        if (node.parent == model::none || model::motion_of(model, model.nodes[node.parent]) != motion) roots_.push_back(n);
+    }
+    near_.reserve(roots_.size());
+    planned_.reserve(max_casters);
+    drawn_.resize(max_casters);
+    items_.reserve(max_items);
+}
+
+/// Largest on the picture first; ids break ties.
+void MovingShadow::find_near(const ShadowScene& scene, const ShadowEye& eye) {
+    near_.clear();
+    const model::Frustum frustum =
+        model::make_frustum(eye.pose, eye.viewport, model::far_corners_m(scene.model.nodes[0].box), eye.radius_m, eye.angle_rad);
+    for (const Index n : roots_) {
+        const Box box = scene.moving.box(n);
+        const double size_px = box.diagonal() * px_per_m(eye, box);
+        if (!(size_px >= min_size_px) || !model::visible(frustum, with_shadow(scene, box))) continue;
+        near_.push_back({n, size_px});
+    }
+    std::sort(near_.begin(), near_.end(),
+              [](const Near& a, const Near& b) { return a.size_px != b.size_px ? a.size_px > b.size_px : a.node < b.node; });
+}
+
+bool MovingShadow::plan(const ShadowScene& scene, const ShadowEye& eye) {
+    items_.clear();
+    planned_.clear();
+    if (!any() || !shines(scene.light)) return false;
+    find_near(scene, eye);
+    if (near_.empty() || !fit(scene)) return false;
+    for (const Cast& cast : planned_) choose_forms(scene, cast.node);
+    return !items_.empty();
+}
+
+/// The smallest square that holds what casts. Its side grows by steps and its middle goes by whole texels, so that edges do not
+/// crawl while things move a little.
+bool MovingShadow::fit(const ShadowScene& scene) {
+    const dvec3 z = glm::normalize(dvec3(scene.light.sun_direction));
+    const dvec3 x = glm::normalize(glm::cross(std::abs(z.y) < 0.99 ? dvec3(0, 1, 0) : dvec3(1, 0, 0), z)), y = glm::cross(z, x);
+    Box all;  // along x, y and z
+    const auto half_of = [](const Box& box) { return std::max({box.half().x, box.half().y, 0.01}); };
+    for (const Near& one : near_) {
+        const std::optional<model::MovingNode> moving = scene.moving.find(one.node);
+        if (!moving || planned_.size() == max_casters) continue;
+        Box with = all;
+        for (unsigned c = 0; c < 8; ++c) {
+            const dvec3 at = moving->pose(box_corner(moving->rest, c));
+            with.grow(dvec3(glm::dot(at, x), glm::dot(at, y), glm::dot(at, z)));
+        }
+        if (!planned_.empty() && 2 * half_of(with) / gl::shadow_map_px > max_texel_m) continue;
+        all = with;
+        planned_.push_back({one.node, moving->pose});
+    }
+    if (planned_.empty() || !std::isfinite(all.diagonal())) return false;
+    constexpr double side = gl::shadow_map_px;
+    constexpr double steps = 8;  // to twice the size
+    const double half_m = std::exp2(std::ceil(steps * std::log2(half_of(all) * side / (side - 2 * rim_texels))) / steps);
+    const double texel_m = 2 * half_m / side;
+    dvec3 middle = all.centre();
+    for (int i = 0; i < 2; ++i) middle[i] = texel_m * std::floor(middle[i] / texel_m + 0.5);
+    const double depth_m = 1.2 * std::max(2 * all.half().z, 0.1);
+    view_.origin = x * middle.x + y * middle.y + z * middle.z;
+    const dmat3 turn = glm::transpose(dmat3(x / half_m, y / half_m, z / depth_m));
+    view_.from_origin = mat4(mat3(turn));
+    view_.from_origin[3] = vec4(0, 0, 0.55F, 1);  // what casts has depths from 0.13 to 0.97
+    view_.towards = vec3(z);
+    view_.texel_m = static_cast<float>(texel_m);
+    view_.depth_m = static_cast<float>(depth_m);
+    return true;
+}
+
+/// The coarsest form that is off by a texel at most; of children, where the node has none.
+void MovingShadow::choose_forms(const ShadowScene& scene, Index index) {
+    if (items_.size() == items_.capacity()) return;
+    const model::Model& m = scene.model;
+    const model::Node& node = m.nodes[index];
+    for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
+        if (m.reps[r].error_m > view_.texel_m || !casts_[r]) continue;
+        items_.push_back({index, r});
+        return;
+    }
+    const Index motion = model::motion_of(m, node);
+    const bool full = items_.size() + node.child_count > items_.capacity();
+    if (node.child_count == 0 || full) {
+        if (casts_[node.first_rep + node.rep_count - 1]) items_.push_back({index, node.first_rep + node.rep_count - 1});
+        return;
+    }
+    for (Index c = node.first_child; c < node.first_child + node.child_count; ++c)
+        if (model::motion_of(m, m.nodes[c]) == motion) choose_forms(scene, c);
+}
+
+float MovingShadow::price_us(const model::Model& model, const model::CostModel& costs) const {
+    constexpr auto texels = static_cast<float>(gl::shadow_map_px * gl::shadow_map_px);
+    const vec3 along = glm::abs(view_.towards);
+    model::ItemCost sum{costs.slice_us, 1e-3F * pass_ns_per_texel * texels};
+    for (const gl::DrawItem& item : items_) {
+        const model::Representation& rep = model.reps[item.rep];
+        const bool holes = (rep.effects & model::effect_alpha_mask) != 0;
+        const model::CostGrid& grid = costs.grid_for(holes ? model::effect_texture | model::effect_alpha_mask : 0);
+        const float area_m2 = rep.area_m2[0] * along.x + rep.area_m2[1] * along.y + rep.area_m2[2] * along.z;
+        sum += costs.item(static_cast<float>(rep.triangles), std::min(texels, area_m2 / (view_.texel_m * view_.texel_m)), grid);
+    }
+    return costs.combine.frame_us(sum.submit_us, sum.raster_us) - costs.combine.fixed_us;
+}
+
+/// By how far a thing's place in the drawn map is off on the picture; all of its size where it is not there.
+double MovingShadow::off_px(const ShadowScene& scene, const ShadowEye& eye, Index node) const {
+    const std::optional<model::MovingNode> moving = scene.moving.find(node);
+    if (!moving) return 0;
+    const Box box = moving->box();
+    const double px = px_per_m(eye, box);
+    const auto end = drawn_.begin() + static_cast<std::ptrdiff_t>(drawn_count_);
+    const auto found = std::find_if(drawn_.begin(), end, [&](const Cast& cast) { return cast.node == node; });
+    if (found == end) return box.diagonal() * px;
+    double way_m = 0;
+    for (unsigned c = 0; c < 8; ++c) {
+        const dvec3 at = box_corner(moving->rest, c);
+        way_m = std::max(way_m, glm::length(moving->pose(at) - found->pose(at)));
+    }
+    // The shadow turns with the sun about what casts it.
+    const double turned = static_cast<double>(glm::length(scene.light.sun_direction - drawn_towards_));
+    return (way_m + turned * box.diagonal()) * px;
+}
+
+bool MovingShadow::recent(const ShadowScene& scene, double worst_px) const {
+    constexpr double still_px = 1e-3;
+    return worst_px <= still_px || (worst_px <= max_off_px && std::abs(scene.time_s - drawn_s_) <= max_age_s);
+}
+
+float MovingShadow::value(const ShadowScene& scene, const ShadowEye& eye) const {
+    constexpr float albedo = 0.5F, of_missing = 1.0F / 6;  // typical of lit surfaces; of a missing thing, as BlurLoss has it
+    const vec3 sun = albedo * scene.light.sun_light * scene.light.sun_direction.y;
+    const float share = std::min(1.0F, glm::dot(sun, sun) / 3.0F / of_missing);
+    const bool shown = usable(scene, eye);
+    double pixels = 0;
+    for (const Cast& cast : planned_) {
+        const Box box = scene.moving.box(cast.node);
+        const double wide_px = box.diagonal() * px_per_m(eye, box);
+        const double all_px = 0.5 * wide_px * wide_px;
+        const double changed_px = shown ? std::min(all_px, 2 * wide_px * off_px(scene, eye, cast.node)) : all_px;
+        pixels += changed_px * static_cast<double>(scene.model.nodes[cast.node].importance);
+    }
+    return static_cast<float>(pixels) * share;
+}
+
+void MovingShadow::drawn(double time_s) {
+    std::copy(planned_.begin(), planned_.end(), drawn_.begin());
+    drawn_count_ = planned_.size();
+    drawn_towards_ = view_.towards;
+    drawn_s_ = time_s;
+}
+
+/// By what is planned now, what came near since included.
+bool MovingShadow::usable(const ShadowScene& scene, const ShadowEye& eye) const {
+    if (drawn_count_ == 0 || !shines(scene.light)) return false;
+    double worst_px = 0;
+    for (const Cast& cast : planned_) worst_px = std::max(worst_px, off_px(scene, eye, cast.node));
+    for (std::size_t i = 0; i < drawn_count_; ++i) worst_px = std::max(worst_px, off_px(scene, eye, drawn_[i].node));
+    return recent(scene, worst_px);
+}
+
+}  // namespace surefoot

@@ -1,0 +1,91 @@
+// The shadow map of what moves as an item of the budget: what it would show now, what that costs, and what it is worth.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/gl/device.hpp"
+#include "render/model/cost.hpp"
+#include "render/model/daylight.hpp"
+#include "render/model/moving.hpp"
+#include "render/model/view.hpp"
+
+namespace surefoot {
+
+/// For whom a map is planned.
+struct ShadowScene {
+    const model::Model& model;
+    const model::MovingNodes& moving;  ///< at the time of the picture
+    const model::Daylight& light;
+    double time_s = 0;
+};
+
+/// The eye, and how much of it may differ from what was prepared.
+struct ShadowEye {
+    Pose pose;
+    model::Viewport viewport;
+    double radius_m = 0, angle_rad = 0;
+};
+
+/// What plans, judges and remembers the map of one engine. After it is made nothing allocates. Deterministic: it reads the scene
+/// at a time, the eye and the light, and no clock.
+class MovingShadow {
+public:
+    /// An old map is shown while nothing in it is off by more, and it is no older. What did not move at all stays for ever.
+    static constexpr double max_off_px = 2, max_age_s = 0.25;
+    static constexpr double min_size_px = 4;     ///< of what casts, on the picture
+    static constexpr double max_texel_m = 0.25;  ///< what would make texels larger is left out, except the largest on the picture
+    static constexpr std::size_t max_casters = 64, max_items = 4096;
+
+    MovingShadow() = default;
+    /// Finds what casts: nodes that move otherwise than their parents, and are not transparent. The model must outlive it.
+    explicit MovingShadow(const model::Model& model);
+    [[nodiscard]] bool any() const { return !roots_.empty(); }
+
+    /// Plans a map for this moment. False: no sun, or nothing that casts is near enough.
+    bool plan(const ShadowScene& scene, const ShadowEye& eye);
+    /// Of the planned map.
+    [[nodiscard]] const gl::ShadowView& view() const { return view_; }
+    [[nodiscard]] std::span<const gl::DrawItem> items() const { return items_; }
+    /// Predicted, to draw it: its triangles, its texels and the end of a pass.
+    [[nodiscard]] float price_us(const model::Model& model, const model::CostModel& costs) const;
+    /// Weighted pixels that it changes: of shadows, times what the sun makes there. Against the drawn map, or against none where
+    /// that may not be shown.
+    [[nodiscard]] float value(const ShadowScene& scene, const ShadowEye& eye) const;
+    /// The planned map was drawn.
+    void drawn(double time_s);
+    /// Whether the drawn map may be shown at this moment. Takes microseconds.
+    [[nodiscard]] bool usable(const ShadowScene& scene, const ShadowEye& eye) const;
+    /// There is no drawn map any more.
+    void forget() { drawn_count_ = 0; }
+
+private:
+    /// A thing in a map, as it stood there.
+    struct Cast {
+        model::Index node = model::none;
+        model::RigidPose pose;
+    };
+    /// A thing that may be in the next map.
+    struct Near {
+        model::Index node = model::none;
+        double size_px = 0;
+    };
+    void find_near(const ShadowScene& scene, const ShadowEye& eye);
+    bool fit(const ShadowScene& scene);
+    void choose_forms(const ShadowScene& scene, model::Index node);
+    [[nodiscard]] double off_px(const ShadowScene& scene, const ShadowEye& eye, model::Index node) const;
+    [[nodiscard]] bool recent(const ShadowScene& scene, double worst_px) const;
+
+    std::vector<model::Index> roots_;
+    std::vector<bool> casts_;  ///< by form: some part of it is not transparent
+    std::vector<Near> near_;
+    std::vector<gl::DrawItem> items_;
+    std::vector<Cast> planned_, drawn_;
+    std::size_t drawn_count_ = 0;
+    gl::ShadowView view_;
+    vec3 drawn_towards_{0, 1, 0};
+    double drawn_s_ = 0;
+};
+
+}  // namespace surefoot

@@ -1,0 +1,303 @@
+// The shadow map of what moves: who calls for it, what it holds, when it is bought, and when an old one is left out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/bake/bake.hpp"
+#include "render/engine.hpp"
+#include "render/model/walk_file.hpp"
+#include "render/moving_shadow.hpp"
+#include "rt/base/file.hpp"
+#include "tests/bake/moving_scene.hpp"
+#include "tests/select/count_malloc.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace surefoot {
+namespace {
+
+using model::Index;
+
+/// A lawn, a ball that circles over it once in 8 s, and a ball that stands far away.
+importer::Scene lawn_and_ball(bool unlit = false) {
+    importer::Scene scene;
+    scene.sources = {"by hand"};
+    scene.materials.resize(2);
+    scene.materials[1].colour = {0.8F, 0.2F, 0.1F, 1};
+    for (importer::Material& material : scene.materials) material.unlit = unlit;
+    const auto lawn = bake::add_mesh(
+        scene, bake::grid_surface(20, 20, [](float u, float v) { return vec3(40 * v - 20, 0, 40 * u - 20); }), "lawn");
+    importer::Primitive red = bake::ball(12, 1);
+    red.material = 1;
+    const auto ball = bake::add_mesh(scene, red, "ball");
+    bake::place(scene, lawn, dvec3(0));
+    bake::place(scene, ball, dvec3(500, 1, 0));
+    bake::place_moving(scene, ball, dvec3(5, 3, 0), bake::add_turn(scene, dvec3(0, 3, 0), dvec3(0, 1, 0), 8));
+    return scene;
+}
+
+const model::Model& baked_lawn() {
+    static const model::Model baked = [] {
+        auto m = bake::bake(lawn_and_ball(), {}, {});
+        EXPECT_TRUE(m.ok());
+        return std::move(*m);
+    }();
+    return baked;
+}
+
+Pose over_the_lawn() {
+    Pose pose;
+    pose.position = dvec3(0, 12, 20);
+    pose.orientation = glm::quatLookAt(glm::normalize(dvec3(0, 0, 0) - pose.position), dvec3(0, 1, 0));
+    return pose;
+}
+
+constexpr model::Viewport lawn_picture{320, 180};
+const ShadowEye eye_of_lawn{over_the_lawn(), lawn_picture};
+
+/// A planner, and the scene at a time.
+struct PlannedLawn {
+    const model::Model& m;
+    model::MovingNodes moving{m};
+    model::Daylight light = model::daylight_of_model(m.sun_direction, m.light);
+    MovingShadow shadow{m};
+
+    explicit PlannedLawn(const model::Model& of = baked_lawn()) : m(of) {}
+    PlannedLawn(const PlannedLawn&) = delete;
+    PlannedLawn& operator=(const PlannedLawn&) = delete;
+    ShadowScene at(double time_s) {
+        moving.set_span(time_s, time_s);
+        return {m, moving, light, time_s};
+    }
+};
+
+TEST(MovingShadowBake, IsCalledForByWhatStandsLitWithinReach) {
+    const model::Model& m = baked_lawn();
+    const model::EffectFinding& finding = m.effects.back();
+    EXPECT_TRUE(finding.called_for);
+    EXPECT_EQ(finding.triangles, 800U) << "the lawn";
+    EXPECT_EQ(finding.reason, "1 of 1 things that move are opaque and within reach of what is lit and stands still");
+    for (const model::Node& node : m.nodes) {
+        if (node.child_count > 0) continue;
+        const bool lawn = std::string(m.name_of(node)) == "lawn";
+        for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r)
+            EXPECT_EQ((m.reps[r].effects & model::effect_moving_shadow) != 0, lawn) << m.name_of(node);
+    }
+}
+
+TEST(MovingShadowBake, IsNotWhereNothingMovesOrIsLitOrIsOpaqueAndSaysSo) {
+    importer::Scene still = lawn_and_ball(), glass = lawn_and_ball();
+    for (importer::Node& node : still.nodes) node.motion = importer::none;
+    glass.materials[1].alpha = model::AlphaMode::blend;
+    const std::vector<std::pair<importer::Scene, std::string>> scenes{
+        {still, "nothing moves"},
+        {glass, "all that moves is transparent"},
+        {lawn_and_ball(true), "nothing lit stands within reach of the shadows of what moves"}};
+    for (const auto& [scene, why] : scenes) {
+        auto m = bake::bake(scene, {}, {});
+        ASSERT_TRUE(m.ok());
+        EXPECT_FALSE(m->effects.back().called_for);
+        EXPECT_EQ(m->effects.back().reason, why);
+        EXPECT_EQ(m->called_for() & model::effect_moving_shadow, 0U);
+    }
+}
+
+TEST(MovingShadowBake, AFileWithoutItIsAsBeforeThereWasAny) {
+    const test::TemporaryFolder folder;
+    importer::Scene still = lawn_and_ball();
+    for (importer::Node& node : still.nodes) node.motion = importer::none;
+    auto m = bake::bake(still, {}, {});
+    ASSERT_TRUE(m.ok());
+    ASSERT_TRUE(model::write_walk(folder / "now.walk", *m).ok());
+    auto read = model::read_walk(folder / "now.walk");
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(read->effects.size(), static_cast<std::size_t>(model::effect_count));
+    m->effects.pop_back();
+    ASSERT_TRUE(model::write_walk(folder / "before.walk", *m).ok());
+    EXPECT_EQ(*read_file(folder / "now.walk"), *read_file(folder / "before.walk"));
+}
+
+TEST(MovingShadow, HoldsAllThatCastsWithARimOfSun) {
+    PlannedLawn lawn;
+    for (double time_s = 0; time_s < 8; time_s += 0.37) {
+        ASSERT_TRUE(lawn.shadow.plan(lawn.at(time_s), eye_of_lawn));
+        const gl::ShadowView& view = lawn.shadow.view();
+        EXPECT_LT(view.texel_m, 0.02F) << "a ball of 2 m";
+        ASSERT_EQ(lawn.shadow.items().size(), 1U);
+        const Index node = lawn.shadow.items()[0].node;
+        const Box rest = lawn.moving.find(node)->rest;
+        const model::RigidPose pose = lawn.moving.find(node)->pose;
+        EXPECT_LE(lawn.m.reps[lawn.shadow.items()[0].rep].error_m, view.texel_m);
+        const float rim = 1 - 4.0F / static_cast<float>(gl::shadow_map_px);
+        for (unsigned c = 0; c < 8; ++c) {
+            const dvec3 corner((c & 1U) != 0 ? rest.max.x : rest.min.x, (c & 2U) != 0 ? rest.max.y : rest.min.y,
+                               (c & 4U) != 0 ? rest.max.z : rest.min.z);
+            const vec4 at = view.from_origin * vec4(vec3(pose(corner) - view.origin), 1);
+            EXPECT_LT(std::max(std::abs(at.x), std::abs(at.y)), rim);
+            EXPECT_GT(at.z, 0.05F);
+            EXPECT_LT(at.z, 1.0F);
+        }
+    }
+}
+
+TEST(MovingShadow, AnOldMapIsShownWhileItIsOffByLittleAndNotTooOld) {
+    PlannedLawn lawn;
+    ASSERT_TRUE(lawn.shadow.plan(lawn.at(1), eye_of_lawn));
+    EXPECT_FALSE(lawn.shadow.usable(lawn.at(1), eye_of_lawn)) << "nothing is drawn yet";
+    const float first = lawn.shadow.value(lawn.at(1), eye_of_lawn);
+    EXPECT_GT(first, 0);
+    lawn.shadow.drawn(1);
+    EXPECT_TRUE(lawn.shadow.usable(lawn.at(1), eye_of_lawn));
+    EXPECT_EQ(lawn.shadow.value(lawn.at(1), eye_of_lawn), 0) << "it would show the same";
+    const ShadowScene soon = lawn.at(1.02);  // 8 cm, about a pixel
+    ASSERT_TRUE(lawn.shadow.plan(soon, eye_of_lawn));
+    EXPECT_TRUE(lawn.shadow.usable(soon, eye_of_lawn));
+    const float little = lawn.shadow.value(soon, eye_of_lawn);
+    EXPECT_GT(little, 0);
+    EXPECT_LT(little, first);
+    const ShadowScene late = lawn.at(1.2);
+    ASSERT_TRUE(lawn.shadow.plan(late, eye_of_lawn));
+    EXPECT_FALSE(lawn.shadow.usable(late, eye_of_lawn)) << "80 cm off";
+    EXPECT_NEAR(lawn.shadow.value(late, eye_of_lawn), first, 0.2F * first) << "all of it is at stake";
+    ShadowScene old = lawn.at(1.005);
+    EXPECT_TRUE(lawn.shadow.usable(old, eye_of_lawn));
+    old.time_s = 1.3;
+    EXPECT_FALSE(lawn.shadow.usable(old, eye_of_lawn));
+    const ShadowScene a_turn_later = lawn.at(9);
+    EXPECT_TRUE(lawn.shadow.usable(a_turn_later, eye_of_lawn)) << "it stands there again";
+    lawn.shadow.forget();
+    EXPECT_FALSE(lawn.shadow.usable(lawn.at(1), eye_of_lawn));
+}
+
+TEST(MovingShadow, IsNotPlannedByNightOrFarFromTheEyeOrBehindIt) {
+    PlannedLawn lawn;
+    lawn.light = model::daylight_at(0, lawn.m.light);
+    EXPECT_FALSE(lawn.shadow.plan(lawn.at(1), eye_of_lawn));
+    lawn.light = model::daylight_at(12, lawn.m.light);
+    EXPECT_TRUE(lawn.shadow.plan(lawn.at(1), eye_of_lawn));
+    ShadowEye far = eye_of_lawn;
+    far.pose.position *= 60;
+    EXPECT_FALSE(lawn.shadow.plan(lawn.at(1), far)) << "a pixel or two";
+    ShadowEye away = eye_of_lawn;
+    away.pose.orientation = glm::quatLookAt(dvec3(0, 0.3, 0.95), dvec3(0, 1, 0));
+    EXPECT_FALSE(lawn.shadow.plan(lawn.at(1), away));
+}
+
+TEST(MovingShadow, AllocatesNothingAfterItIsMade) {
+    PlannedLawn lawn;
+    const std::uint64_t before = test::allocations();
+    for (int i = 0; i < 20; ++i) {
+        const ShadowScene scene = lawn.at(0.1 * i);
+        if (lawn.shadow.plan(scene, eye_of_lawn) && lawn.shadow.value(scene, eye_of_lawn) > 0) lawn.shadow.drawn(scene.time_s);
+    }
+    EXPECT_EQ(test::allocations(), before);
+}
+
+/// Frames of one engine.
+struct ShadowFrames {
+    std::unique_ptr<Engine> engine;
+    prepare::PreparedFrame prepared;
+
+    explicit ShadowFrames(gl::BackendKind backend, model::Model model = baked_lawn()) {
+        EngineOptions options;
+        options.device.kind = backend;
+        options.device.viewport = lawn_picture;
+        options.device.switches = {model::effect_moving_shadow};
+        auto opened = Engine::open(std::move(model), model::default_costs(), options);
+        if (!opened) {
+            EXPECT_EQ(opened.error().kind, ErrorKind::unsupported) << opened.error().text();
+            return;
+        }
+        engine = std::move(*opened);
+        engine->device().draws.plays();
+        engine->reserve(prepared);
+    }
+    SubmitReport frame(double time_s, double budget_us = 1e6) {
+        engine->device().draws.plays();
+        PrepareHints hints;
+        hints.time_s = time_s;
+        engine->prepare({over_the_lawn(), 0.25, 0.06}, 0, 0, 0, prepared, hints);
+        engine->set_time(time_s);
+        engine->select(prepared, budget_us, {}, 0);
+        SubmitLimits limits;
+        limits.limit_us = 1e6;
+        return engine->submit(over_the_lawn(), limits);
+    }
+    std::vector<std::uint8_t> pixels() {
+        engine->device().draws.plays();
+        auto image = engine->device().read_pixels();
+        EXPECT_TRUE(image.ok());
+        return image.ok() ? std::move(image->rgba) : std::vector<std::uint8_t>{};
+    }
+};
+
+TEST(MovingShadow, IsBoughtWhenItChangesPaidForAndCounted) {
+    ShadowFrames frames(gl::BackendKind::null);
+    ASSERT_NE(frames.engine, nullptr);
+    const SubmitReport first = frames.frame(1);
+    EXPECT_TRUE(first.shadow_refreshed && first.shadow_shown);
+    EXPECT_EQ(first.bought_items, 1U);
+    EXPECT_GT(first.bought_us, 30) << "more than the end of a slice";
+    EXPECT_NEAR(first.finished_us, first.predicted_us, 1e-3 * first.predicted_us) << "the device charges what was predicted";
+    const SubmitReport same = frames.frame(1);
+    EXPECT_FALSE(same.shadow_refreshed) << "it would show the same";
+    EXPECT_TRUE(same.shadow_shown);
+    EXPECT_EQ(same.bought_items, 0U);
+    EXPECT_TRUE(frames.frame(1.1).shadow_refreshed);
+}
+
+TEST(MovingShadow, StaysForAWhileWhereThereIsNoTimeAndIsThenLeftOut) {
+    ShadowFrames frames(gl::BackendKind::null);
+    ASSERT_NE(frames.engine, nullptr);
+    frames.frame(1);
+    const double floor_us = 1;  // nothing but the floor
+    const SubmitReport soon = frames.frame(1.02, floor_us);
+    EXPECT_FALSE(soon.shadow_refreshed);
+    EXPECT_TRUE(soon.shadow_shown) << "a pixel off";
+    EXPECT_FALSE(frames.frame(1.2, floor_us).shadow_shown);
+    EXPECT_TRUE(frames.frame(1.2).shadow_shown);
+}
+
+TEST(MovingShadow, GoesWithItsSwitchAndTheSun) {
+    ShadowFrames frames(gl::BackendKind::null);
+    ASSERT_NE(frames.engine, nullptr);
+    frames.engine->hide_effects(model::effect_moving_shadow);
+    const SubmitReport hidden = frames.frame(1);
+    EXPECT_FALSE(hidden.shadow_refreshed || hidden.shadow_shown);
+    frames.engine->hide_effects(0);
+    EXPECT_TRUE(frames.frame(1).shadow_shown);
+    frames.engine->set_light(model::daylight_at(0, frames.engine->model().light));
+    const SubmitReport night = frames.frame(1);
+    EXPECT_FALSE(night.shadow_refreshed || night.shadow_shown);
+}
+
+TEST(MovingShadow, IsInThePictureOfFramesAndInNoOther) {
+    ShadowFrames frames(gl::BackendKind::egl);
+    if (frames.engine == nullptr) GTEST_SKIP() << "EGL is not there, or a sanitizer allows no GL";
+    frames.frame(1);
+    const std::vector<std::uint8_t> with = frames.pixels();
+    frames.frame(3);
+    const std::vector<std::uint8_t> later = frames.pixels();
+    EXPECT_NE(later, with);
+    frames.frame(1);
+    EXPECT_EQ(frames.pixels(), with) << "by the time alone";
+    const auto items = frames.engine->full_detail(over_the_lawn());
+    frames.engine->draw_unbudgeted(over_the_lawn(), items);
+    const std::vector<std::uint8_t> without = frames.pixels();
+    std::size_t darker = 0, brighter = 0;
+    for (std::size_t i = 0; i < with.size(); ++i) {
+        darker += with[i] + 8 < without[i] ? 1 : 0;
+        brighter += with[i] > without[i] + 8 ? 1 : 0;
+    }
+    EXPECT_GT(darker, 150U) << "a ball of 2 m at 20 m";
+    EXPECT_LT(brighter, 20U);
+    EXPECT_TRUE(frames.engine->refresh_shadow(over_the_lawn()));
+    frames.engine->draw_unbudgeted(over_the_lawn(), items);
+    EXPECT_EQ(frames.pixels(), with) << "all is in full detail";
+}
+
+}  // namespace
+}  // namespace surefoot
