@@ -103,6 +103,7 @@ TEST_P(Growth, OfManyReloadsIsNone) {
     const int reloads = requested != nullptr ? std::max(usual_reloads, std::atoi(requested)) : usual_reloads;
     const int few = reloads / 3;
     Running daemon("reload-growth-" + backend);
+    daemon.rate_hz = 100;  // a walk rehearses 24 periods: short ones begin sooner
     // In turns another size: nothing of the last walk fits the next.
     const auto size = [](int n) { return n % 2 == 0 ? "160x120" : "192x144"; };
     const auto config = [&](int n) {

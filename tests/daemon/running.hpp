@@ -78,7 +78,7 @@ public:
     /// Over the defaults of these tests; the model is the small forest.
     void write_config(const std::string& more = "", const std::string& backend = "null") const {
         const std::string text = "model = \"" + Forest::get().model_file + "\"\nbackend = \"" + backend +
-                                 "\"\nrate_hz = 50\nstate = \"" + dir + "\"\n" + more;
+                                 "\"\nrate_hz = " + std::to_string(rate_hz) + "\nstate = \"" + dir + "\"\n" + more;
         EXPECT_TRUE(write_text(config_file, text).ok());
     }
 
@@ -148,6 +148,7 @@ public:
     }
 
     std::string dir, config_file;
+    int rate_hz = 50;  ///< of the configurations that are written
     NotifySocket socket;
     std::vector<std::pair<std::string, std::string>> environment;
     pid_t pid = -1;

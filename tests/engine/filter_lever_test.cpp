@@ -312,13 +312,10 @@ TEST(EngineFilter, IsOfferedOnlyWhereSomethingIsTexturedAndABudgetRules) {
 }
 
 model::Model textured_forest() {
-    auto scene = scenes::generate("forest", 0.5, 1);
-    EXPECT_TRUE(scene.ok());
-    auto baked = bake::bake(scene->scene, {}, {});
-    EXPECT_TRUE(baked.ok());
-    for (model::Material& material : baked->materials) material.effects |= model::effect_texture;
-    for (model::Representation& rep : baked->reps) rep.effects |= model::effect_texture;
-    return std::move(*baked);
+    model::Model forest = test::forest_model();
+    for (model::Material& material : forest.materials) material.effects |= model::effect_texture;
+    for (model::Representation& rep : forest.reps) rep.effects |= model::effect_texture;
+    return forest;
 }
 
 TEST(EngineFilter, TheInFrameCheckCountsItSliceBySlice) {

@@ -14,18 +14,24 @@ namespace surefoot::test {
 /// More time than any frame takes.
 constexpr double ample_us = 1e9;
 
+/// Baked once for all tests of the program.
+inline const model::Model& forest_model() {
+    static const model::Model forest = [] {
+        auto scene = scenes::generate("forest", 0.5, 1);
+        EXPECT_TRUE(scene.ok());
+        auto model = scene ? bake::bake(scene->scene, {}, {}) : Result<model::Model>(scene.error());
+        EXPECT_TRUE(model.ok());
+        return model ? std::move(*model) : model::Model{};
+    }();
+    return forest;
+}
+
 /// Null and a failure of the test where it cannot be opened. resolution: as in EngineOptions.
 inline std::unique_ptr<Engine> forest_engine(float resolution = 1) {
-    auto scene = scenes::generate("forest", 0.5, 1);
-    EXPECT_TRUE(scene.ok());
-    if (!scene) return nullptr;
-    auto model = bake::bake(scene->scene, {}, {});
-    EXPECT_TRUE(model.ok());
-    if (!model) return nullptr;
     EngineOptions options;
     options.device.kind = gl::BackendKind::null;
     options.resolution = resolution;
-    auto opened = Engine::open(std::move(*model), model::default_costs(), options);
+    auto opened = Engine::open(forest_model(), model::default_costs(), options);
     EXPECT_TRUE(opened.ok());
     return opened ? std::move(*opened) : nullptr;
 }

@@ -159,7 +159,9 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     rt::Clock& clock = s.virtual_clock ? static_cast<rt::Clock&>(virtual_time) : real;
     // Far enough ahead that all threads are in place before the first slot, and the first view is rehearsed.
     constexpr std::int64_t in_place_ns = 300'000'000, max_rehearsal_ns = 1'200'000'000;
-    const std::int64_t ahead_ns = in_place_ns + std::min(rehearsed_frames * s.grid.period_ns, max_rehearsal_ns);
+    const std::int64_t rehearsal_ns =
+        rehearses(s.request, s.virtual_clock) ? std::min(rehearsed_frames * s.grid.period_ns, max_rehearsal_ns) : 0;
+    const std::int64_t ahead_ns = in_place_ns + rehearsal_ns;
     if (s.display)
         s.grid = s.display->grid_from(real.now_ns() + ahead_ns);
     else

@@ -129,7 +129,7 @@ PrepareHints WalkStages::hints() const {
 }
 
 void WalkStages::rehearse(std::int64_t until_ns) {
-    if (virtual_clock_ || !request_.correct_costs) return;
+    if (!rehearses(request_, virtual_clock_)) return;
     gl::Device& device = engine_.device();
     device.draws.plays();
     std::int64_t due_ns = clock_.now_ns();

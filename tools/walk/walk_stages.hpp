@@ -62,6 +62,8 @@ struct WalkStagesOptions {
 
 /// At most. A correction is the median of 15, and changes by 6 % a frame; then a resolution is chosen.
 constexpr int rehearsed_frames = 24;
+/// Whether a walk has a rehearsal: it is there for the corrections of costs. A walk without one begins at once.
+constexpr bool rehearses(const WalkRequest& request, bool virtual_clock) { return request.correct_costs && !virtual_clock; }
 
 /// The stages of a walk. The frame thread calls all members.
 class WalkStages final : public rt::FrameStages {
