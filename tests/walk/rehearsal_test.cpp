@@ -8,6 +8,7 @@
 
 #include "render/model/cost.hpp"
 #include "rt/base/progress.hpp"
+#include "rt/clock/clock.hpp"
 #include "tests/walk/walk_fixture.hpp"
 
 namespace surefoot {
@@ -73,6 +74,24 @@ TEST(Rehearsal, AStopEndsItAtOnce) {
     EXPECT_LT(std::chrono::steady_clock::now() - started, std::chrono::milliseconds(900));
     EXPECT_TRUE(outcome->stopped);
     EXPECT_TRUE(outcome->records.empty());
+}
+
+// At 10 Hz a rehearsal takes 1.2 s. A busy machine only makes what is left until the first slot shorter.
+TEST(Rehearsal, AWalkWithoutOneBeginsAtOnce) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(1);
+    request.clock = rt::ClockKind::real;
+    request.fifo = false;
+    request.rate_hz = 10;
+    request.correct_costs = false;
+    std::int64_t started_ns = 0;
+    walk::WalkObserver observer;
+    observer.on_started = [&](const walk::WalkStart& /*start*/) { started_ns = rt::monotonic_ns(); };
+    const auto outcome = walk::run_walk(request, {}, observer);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().text();
+    ASSERT_EQ(outcome->records.size(), 1U);
+    const rt::FrameRecord& first = outcome->records.front();
+    const std::int64_t first_slot_ns = first.due_ns - static_cast<std::int64_t>(first.slot) * 100'000'000;
+    EXPECT_LT(first_slot_ns - started_ns, 400'000'000);
 }
 
 TEST(Rehearsal, ThereIsNoneOnTheVirtualClockOrWithoutCorrection) {
