@@ -268,7 +268,7 @@ Result<void> Run::prices(Calibration& out) {
     for (const PriceCell& cell : scene_.prices) {
         if (progress_.stopped()) return stopped;
         progress_.update("effects", static_cast<double>(points.size()) / static_cast<double>(scene_.prices.size()));
-        const std::size_t slice = std::max<std::size_t>(1, (cell.with.size() + 2) / 3);
+        constexpr std::size_t slice = 1;  // far to near: what hides another's pixels would hide its price
         const auto count = static_cast<double>(cell.with.size());
         std::vector<double> submit, raster;
         for (int i = 0; i < pairs; ++i) {

@@ -286,6 +286,8 @@ void make_price_cells(Builder& builder, const Meshes& meshes, model::Viewport vi
                 cell.triangles += mesh.triangles;
             });
             cell.triangles /= static_cast<double>(cell.with.size());
+            std::reverse(cell.without.begin(), cell.without.end());  // far to near
+            std::reverse(cell.with.begin(), cell.with.end());
         }
     }
     // What they read; its bytes do not matter.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "render/gl/device.hpp"
@@ -44,6 +45,21 @@ double measured_us(gl::Device& device, std::span<const gl::DrawItem> items, mode
         more.push_back(first ? other - one : one - other);
     }
     return median_of(more);
+}
+
+/// Of the scene's items with all effects the one of the most pixels, and those.
+std::pair<gl::DrawItem, float> largest_item(const CalibrationScene& scene, const model::ItemCosts& costs) {
+    std::pair<gl::DrawItem, float> largest{};
+    for (const CalibrationCell& cell : scene.cells) {
+        if (cell.effects != (model::effect_texture | model::effect_sun)) continue;
+        for (const gl::DrawItem& item : cell.items) {
+            float pixels = 0;
+            static_cast<void>(costs.of(item.rep, scene.model.nodes[item.node].box, dvec3(0),
+                                       model::make_view_scale(Pose{}, priced_view), pixels));
+            if (pixels > largest.second) largest = {item, pixels};
+        }
+    }
+    return largest;
 }
 
 TEST(EffectPrices, PredictWhatEachAddsToASceneWithAllOfThem) {
@@ -88,6 +104,13 @@ TEST(EffectPrices, PredictWhatEachAddsToASceneWithAllOfThem) {
         EXPECT_NEAR(predicted, measured, 0.5 * std::max(predicted, measured) + 0.03 * all) << effects::effects_text(effect);
         EXPECT_LT(predicted, 0.5 * all);
     }
+    // Nothing hides its pixels. Of those that hide each other only a part was priced.
+    const std::pair<gl::DrawItem, float> alone = largest_item(scene, costs);
+    const model::ItemCost fog = costs.of_effects(alone.first.rep, alone.second, model::effect_fog);
+    const double measured_fog = measured_us(**device, {&alone.first, 1}, model::effect_fog);
+    std::printf("fog over %.0f px: predicted %.1f us, measured %.1f us\n", static_cast<double>(alone.second),
+                static_cast<double>(fog.submit_us + fog.raster_us), measured_fog);
+    EXPECT_GT(static_cast<double>(fog.raster_us), 0.4 * measured_fog);
 }
 
 }  // namespace
