@@ -35,8 +35,8 @@ struct ClusterCover {
 
 /// Levels below half or above twice are scaled: each connected part about its own middle, within the box. How far this moves a
 /// vertex is added to their error, so the bound holds; it at most doubles. No more than 30 % of full detail's samples may come to
-/// lie beside it. Levels that still cover too little or too much are taken out, as long as one is left: the one that is nearest
-/// to full detail. Whether the chain changed.
+/// lie beside it. Levels that still cover too little or too much are taken out. If none would be left, the one nearest to full
+/// detail stays. Whether the chain changed.
 bool mend_cluster(LodChain& chain, const ClusterCover& cover);
 
 }  // namespace surefoot::bake
