@@ -314,10 +314,10 @@ void Engine::set_time(double time_s) {
     e.draws.plays();
     if (e.restless.empty()) return;
     e.device->draws.plays();
-    const double shown_s = e.options.motion ? time_s : 0;
+    const double shown_s = e.options.motion && std::isfinite(time_s) ? time_s : 0;
     e.poses.set_time(shown_s);
     e.moving.set_span(shown_s, shown_s);
-    e.time_s = std::isfinite(shown_s) ? shown_s : 0;
+    e.time_s = shown_s;
     e.device->set_time(shown_s);
 }
 

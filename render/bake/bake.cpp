@@ -327,9 +327,12 @@ void BakeContext::emit() {
 
 /// Meshes of clusters cover about what is below them: else they change, and all is emitted anew.
 bool BakeContext::mend_clusters() {
-    std::vector<LodChain*> chains(entities.size(), nullptr);
-    for (std::size_t n = 0; n < entities.size(); ++n)
-        if (entities[n] >= objects.size()) chains[n] = &clusters[entities[n] - objects.size()].chain;
+    std::vector<ClusterChain> chains(entities.size());
+    for (std::size_t n = 0; n < entities.size(); ++n) {
+        if (entities[n] < objects.size()) continue;
+        const std::size_t c = entities[n] - objects.size();
+        chains[n] = {&clusters[c].chain, tree.clusters[c].displacement_m};
+    }
     const auto all = [](std::size_t n, const std::function<void(std::size_t)>& body) { for_all(n, body); };
     Stage stage(progress, "coverage", mend_steps(model));
     const std::optional<bool> changed = bake::mend_clusters(model, chains, all, [&] { return stage.step(); });

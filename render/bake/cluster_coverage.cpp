@@ -37,8 +37,8 @@ LevelOutlines outlines_of(const Geometry& g, const Level& level, const ClusterCo
     LevelOutlines sum;
     FormPicture picture;
     std::size_t at = 0;
-    for (const auto& [azimuth_rad, elevation_rad] : std::span(loss_directions).first<outline_directions>()) {
-        picture.clear(view_of(cover.box, direction_of(azimuth_rad, elevation_rad), cover.middle, outline_px), false);
+    for (const FormView& view : cover.views) {
+        picture.clear(view, false);
         draw_geometry(*cover.looks, g.vertices, level.parts, picture);
         for (const FormSample& sample : picture.samples) {
             sum.covered += sample.covered() ? 1 : 0;
@@ -108,8 +108,9 @@ std::optional<Level> scale_to_cover(Geometry& g, const Level& level, const Clust
         Level scaled = scaled_level(g, level, scale, cover.box);
         const LevelOutlines outlines = outlines_of(g, scaled, cover);
         share = outline_share(outlines.covered, cover);
-        if (!covers_badly(share) && static_cast<double>(outlines.beside) <= max_beside && scaled.error_m <= 2 * level.error_m)
-            return scaled;
+        const double own_m = static_cast<double>(level.error_m) - cover.displacement_m;
+        const bool small_change = static_cast<double>(scaled.error_m) - cover.displacement_m <= 2 * own_m;
+        if (!covers_badly(share) && static_cast<double>(outlines.beside) <= max_beside && small_change) return scaled;
         g.vertices.resize(before);
         g.baked.resize(before);
         if (scale >= max_part_scale || scale <= min_part_scale) break;
@@ -144,6 +145,7 @@ struct ClusterSamples {
     std::uint64_t full = 0;
     std::vector<std::uint64_t> forms;
     std::vector<bool> outlines;  ///< of full detail, by sample of all directions
+    std::vector<FormView> views;
 };
 
 /// Empty: step() said to stop.
@@ -155,6 +157,7 @@ std::vector<ClusterSamples> count_outlines(const model::Model& model, PictureTre
             const model::Node& node = model.nodes[n];
             ClusterSamples& of_node = samples[n];
             of_node.full += outline_samples(full);
+            of_node.views.push_back(full.view);
             for (const FormSample& sample : full.samples) of_node.outlines.push_back(sample.covered());
             of_node.forms.resize(node.rep_count);
             FormPicture form;
@@ -171,9 +174,13 @@ std::vector<ClusterSamples> count_outlines(const model::Model& model, PictureTre
 }
 
 /// A level whose error equals a coarser one's is in no model: it counts as it should.
-ClusterCover cluster_cover(const model::Model& model, const model::Node& node, const LodChain& chain,
+ClusterCover cluster_cover(const model::Model& model, const model::Node& node, const ClusterChain& cluster,
                            const ClusterSamples& samples) {
+    const LodChain& chain = *cluster.chain;
     ClusterCover cover;
+    cover.displacement_m = cluster.displacement_m;
+    cover.views = samples.views;
+    for (FormView& view : cover.views) view.middle -= chain.full.centre;
     cover.full = samples.full;
     cover.outlines = samples.outlines;
     cover.levels.assign(chain.levels.size(), samples.full);
@@ -183,26 +190,26 @@ ClusterCover cluster_cover(const model::Model& model, const model::Node& node, c
         cover.levels[level] = samples.forms[k];
     }
     cover.box = Box{node.box.min - chain.full.centre, node.box.max - chain.full.centre};
-    cover.middle = model.nodes[0].box.centre() - chain.full.centre;
     cover.looks = &model;
     return cover;
 }
 
 }  // namespace
 
-std::size_t mend_steps(const model::Model& model) { return outline_directions * PictureTree(model).clusters(); }
+std::size_t mend_steps(const model::Model& model) { return (outline_directions + 1) * PictureTree(model).clusters(); }
 
-std::optional<bool> mend_clusters(const model::Model& model, const std::vector<LodChain*>& chains, const ForAll& for_all,
+std::optional<bool> mend_clusters(const model::Model& model, const std::vector<ClusterChain>& chains, const ForAll& for_all,
                                   const std::function<bool()>& step) {
     PictureTree tree(model);
     const std::vector<ClusterSamples> samples = count_outlines(model, tree, for_all, step);
     if (samples.empty()) return {};
-    std::atomic<bool> changed{false};
+    std::atomic<bool> changed{false}, go{true};
     for_all(chains.size(), [&](std::size_t n) {
-        if (chains[n] == nullptr) return;
-        if (mend_cluster(*chains[n], cluster_cover(model, model.nodes[n], *chains[n], samples[n]))) changed = true;
+        if (chains[n].chain == nullptr || !go) return;
+        if (mend_cluster(*chains[n].chain, cluster_cover(model, model.nodes[n], chains[n], samples[n]))) changed = true;
+        if (!step()) go = false;
     });
-    return changed.load();
+    return go ? std::optional(changed.load()) : std::nullopt;
 }
 
 bool mend_cluster(LodChain& chain, const ClusterCover& cover) {

@@ -1,6 +1,7 @@
 // The device on a real GL context: sorts, batches and multi-draws items, slice by slice.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -37,7 +38,7 @@ public:
     void set_filter(rt::TextureFilter filter) override REQUIRES(draws);
     void hide_effects(model::EffectMask hidden) override REQUIRES(draws);
     void set_light(const model::Daylight& light) override REQUIRES(draws) { light_ = light; }
-    void set_time(double time_s) override REQUIRES(draws) { time_s_ = time_s; }
+    void set_time(double time_s) override REQUIRES(draws) { time_s_ = std::isfinite(time_s) ? time_s : 0; }
     [[nodiscard]] bool receives_shadows() const override { return shadow_.framebuffer != 0; }
     void refresh_shadow(const ShadowView& view, std::span<const DrawItem> casters) override REQUIRES(draws);
     void show_shadow(bool shown) override REQUIRES(draws) { shadow_shown_ = shown; }

@@ -278,6 +278,10 @@ Check check_rest(const Model& m) {
     if (m.names.empty() || m.names.front() != '\0' || m.names.back() != '\0') {
         return Error{"names", "The names are not zero-terminated", "Bake the model again", ErrorKind::damaged};
     }
+    if (m.effects.size() > static_cast<std::size_t>(effect_count)) {
+        return Error{"effects", "A later program baked the model: it calls for effects that are not known here",
+                     "Use that program, or bake the model again with this one", ErrorKind::unsupported};
+    }
     if (m.effects.size() != static_cast<std::size_t>(effect_count)) {
         return Error{"effects", "The findings are not one for every effect", "Bake the model again", ErrorKind::damaged};
     }

@@ -112,10 +112,13 @@ Result<void> write_pages(AtomicFile& out, std::span<const std::byte> payload, Pa
     return {};
 }
 
-std::vector<EffectFinding> looked_for(const std::vector<EffectFinding>& findings) {
+std::vector<EffectFinding> looked_for(const Model& m) {
     std::vector<EffectFinding> out;
-    std::copy_if(findings.begin(), findings.end(), std::back_inserter(out), [](const EffectFinding& f) { return f.looked_for; });
-    // Files without the newer effects are as before there were any, and earlier programs open them.
+    std::copy_if(m.effects.begin(), m.effects.end(), std::back_inserter(out),
+                 [](const EffectFinding& f) { return f.looked_for; });
+    // Files without the newer effects are as before there were any, and earlier programs open them. Where something moves, the
+    // file is new anyway, and says why it has no shadow.
+    if (!m.motions.empty()) return out;
     while (!out.empty() && out.back().bit > effect_fog && !out.back().called_for) out.pop_back();
     return out;
 }
@@ -154,7 +157,7 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
             put.list(m.textures);
             break;
         case effects_section:
-            put.list(looked_for(m.effects));
+            put.list(looked_for(m));
             break;
         case losses_section:
             walk::fields(put, m.colours);

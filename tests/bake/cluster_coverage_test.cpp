@@ -46,8 +46,8 @@ std::uint64_t samples_of_level(const Geometry& g, const Level& level, const Clus
                                std::vector<bool>* outlines = nullptr) {
     std::uint64_t sum = 0;
     FormPicture picture;
-    for (const auto& [azimuth_rad, elevation_rad] : std::span(loss_directions).first<outline_directions>()) {
-        picture.clear(view_of(cover.box, direction_of(azimuth_rad, elevation_rad), cover.middle, outline_px));
+    for (const FormView& view : cover.views) {
+        picture.clear(view);
         draw_geometry(*cover.looks, g.vertices, level.parts, picture);
         for (const FormSample& sample : picture.samples) {
             sum += sample.covered() ? 1 : 0;
@@ -61,14 +61,17 @@ std::uint64_t samples_of_level(const Geometry& g, const Level& level, const Clus
 struct SquareRow {
     model::Model looks = row_looks();
     Geometry full;
-    Level whole = add_squares(full, 11, 0.4F, 0);
+    Level whole;
     LodChain chain;
     ClusterCover cover;
 
-    explicit SquareRow(const std::vector<float>& halves_m) {
+    explicit SquareRow(const std::vector<float>& halves_m, float whole_half_m = 0.4F)
+        : whole(add_squares(full, 11, whole_half_m, 0)) {
         for (const float half_m : halves_m)
             chain.levels.push_back(add_squares(chain.full, 11, half_m, 3.0F - static_cast<float>(chain.levels.size())));
         cover.box = full.box();
+        for (const auto& [azimuth_rad, elevation_rad] : std::span(loss_directions).first<outline_directions>())
+            cover.views.push_back(view_of(cover.box, direction_of(azimuth_rad, elevation_rad), dvec3(0), outline_px));
         cover.looks = &looks;
         cover.full = samples_of_level(full, whole, cover, &cover.outlines);
         for (const Level& level : chain.levels) cover.levels.push_back(samples_of_level(chain.full, level, cover));
@@ -108,6 +111,48 @@ TEST(ClusterCoverage, WhatCannotCoverEnoughGoesUnlessNothingElseIsLeft) {
     EXPECT_EQ(alone.chain.levels[0].error_m, 2.0F) << "the one that covers more";
     alone.cover.levels.erase(alone.cover.levels.begin());
     EXPECT_FALSE(mend_cluster(alone.chain, alone.cover));
+}
+
+TEST(ClusterCoverage, WhatCoversTooMuchShrinks) {
+    SquareRow row({0.48F, 0.2F}, 0.22F);
+    row.cover.box.grow(dvec3(-6, -0.5, -1));
+    row.cover.box.grow(dvec3(6, 0.5, 1));
+    ASSERT_GT(row.share(0), max_covered);
+    const Level large = row.chain.levels[0];
+    ASSERT_TRUE(mend_cluster(row.chain, row.cover));
+    ASSERT_EQ(row.chain.levels.size(), 2U);
+    EXPECT_LE(row.share(0), max_covered);
+    EXPECT_GE(row.share(0), 1.0);
+    EXPECT_GT(row.chain.levels[0].error_m, large.error_m + 0.05F);
+}
+
+TEST(ClusterCoverage, ErrorsAtMostDoubleBesideTheWayOfWhatMovesBelow) {
+    const auto row_of = [](float error_m, double displacement_m) {
+        SquareRow row({0.2F, 0.35F});
+        row.chain.levels[0].error_m = error_m + static_cast<float>(displacement_m);
+        row.chain.levels[1].error_m = 0.01F + static_cast<float>(displacement_m);
+        row.cover.displacement_m = displacement_m;
+        EXPECT_TRUE(mend_cluster(row.chain, row.cover));
+        return row.chain.levels.size();
+    };
+    EXPECT_EQ(row_of(1, 0), 2U);
+    EXPECT_EQ(row_of(0.05F, 0), 1U) << "corners go farther than the level may be off";
+    EXPECT_EQ(row_of(1, 40), 2U);
+    EXPECT_EQ(row_of(0.05F, 40), 1U) << "though what is below moves by 40 m";
+}
+
+TEST(ClusterCoverage, NothingGrowsBeyondTheBox) {
+    SquareRow row({0.2F, 0.35F});
+    row.cover.box.max.y = 0.2;
+    row.cover.box.min.y = -0.2;
+    ASSERT_TRUE(mend_cluster(row.chain, row.cover));
+    ASSERT_EQ(row.chain.levels.size(), 2U);
+    float widest = 0;
+    for (const std::uint32_t i : row.chain.levels[0].parts[0].indices) {
+        EXPECT_LE(std::abs(row.chain.full.vertices[i].position[1]), 0.2F);
+        widest = std::max(widest, row.chain.full.vertices[i].position[0]);
+    }
+    EXPECT_GT(widest, 5.3F) << "to the sides it grew";
 }
 
 TEST(ClusterCoverage, LevelsThatCoverEnoughStayAsTheyAre) {

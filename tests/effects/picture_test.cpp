@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <set>
 #include <string>
@@ -325,6 +326,19 @@ TEST_P(Pictures, follow_the_moment_from_frame_to_frame_with_every_program) {
         EXPECT_EQ(found.interior, 0U) << "frame " << frame << ", moment " << moment << ": " << found.worst << " steps off";
         EXPECT_LE(found.at_edges, max_at_edges) << "frame " << frame;
     }
+}
+
+TEST_P(Pictures, of_water_at_a_time_that_is_no_number_are_those_of_the_start) {
+    const model::Model model = uniform_scene(scene_, model::effect_water);
+    load(model);
+    const Pose pose = scene_.poses()[0];
+    const gl::PixelImage start = picture(model, pose);
+    device_->draws.plays();
+    device_->set_time(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_EQ(picture(model, pose).rgba, start.rgba);
+    device_->draws.plays();
+    device_->set_time(0.7);
+    EXPECT_NE(picture(model, pose).rgba, start.rgba);
 }
 
 INSTANTIATE_TEST_SUITE_P(Software, Pictures, ::testing::Values(BackendKind::egl, BackendKind::osmesa),

@@ -202,6 +202,19 @@ TEST(MotionPoses, AreThoseOfTheirTimeBitForBitHoweverOftenAndInWhateverOrder) {
     }
 }
 
+TEST(MotionPoses, AreWorkedOutOnceATime) {
+    Random random(14);
+    Model m;
+    add_motion(m, random, none, false);
+    MotionPoses poses(m);
+    poses.set_time(0.4);
+    const RigidPose first = poses.at(0);
+    for (MotionKey& key : m.motion_keys) key.translation += dvec3(5, 0, 0);
+    EXPECT_EQ(poses.at(0).translation, first.translation) << "the keys are not read again";
+    poses.set_time(0.5);
+    EXPECT_TRUE(poses.at(0).translation == pose_at(m, 0, 0.5).translation);
+}
+
 TEST(MovingNodes, AreWhereTheirPosesAre) {
     Random random(13);
     Model motions;

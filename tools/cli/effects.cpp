@@ -104,16 +104,18 @@ int run_effects(const EffectsArguments& a) {
     if (!a.json) fmt::print("{}\n", columns.heading());
     const auto show = [&](std::string_view name, std::string_view what, std::string_view requested_by,
                           const model::EffectFinding& f) {
+        // What a file does not say is explained by what would call for it.
+        const std::string reason = f.looked_for ? f.reason : fmt::format("{}; it takes {}", f.reason, requested_by);
         if (a.json) {
             list.push_back({{"effect", std::string(name)},
                             {"what", std::string(what)},
                             {"asked_by", std::string(requested_by)},
                             {"called_for", f.called_for},
                             {"triangles", f.triangles},
-                            {"reason", f.reason}});
+                            {"reason", reason}});
         } else {
             fmt::print("{}\n",
-                       columns.row({std::string(name), f.called_for ? "yes" : "no", std::to_string(f.triangles), f.reason}));
+                       columns.row({std::string(name), f.called_for ? "yes" : "no", std::to_string(f.triangles), reason}));
         }
     };
     for (const effects::EffectModule& effect : effects::all_effects())
