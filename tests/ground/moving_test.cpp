@@ -56,6 +56,70 @@ TEST(Moving, WhoIsPutBesideWhatHeStoodInComesToNoPlaceWhereSomethingMoves) {
     EXPECT_EQ(rider.walker.passed_through(), 0U);
 }
 
+namespace {
+
+constexpr double gate_shuts_s = 11;
+
+/// A platform up to x = 2, and beside it a shaft as narrow as the body, 0.9 m deep; far behind it is another platform. After
+/// gate_shuts_s a block stands on the first one, from `gate_from` to x = 1.95.
+MovingScene shaft_with_a_gate(double gate_from) {
+    MovingScene scene;
+    add_floor(scene.still, -10, 2, -10, 10, 0.9);
+    add_wall(scene.still, {2, -10}, {2, 10}, 0, 0.9);
+    add_floor(scene.still, 2, 2.63, -0.32, 0.32, 0);
+    add_wall(scene.still, {2.63, -10}, {2.63, 10}, 0, 4);
+    for (const double z : {-0.32, 0.32}) add_wall(scene.still, {2, z}, {2.7, z}, 0, 4);
+    add_floor(scene.still, 5, 9, -4, 4, 0.9);
+    MovingThing gate;
+    add_box(gate.at_rest, {gate_from, 0.8, -12}, {1.95, 4, 12});
+    const dvec3 away(0, 40, 0);
+    gate.stands = {{0, away}, {gate_shuts_s, away}, {gate_shuts_s, dvec3(0.0)}, {1000, dvec3(0.0)}};
+    scene.things.push_back(gate);
+    return scene;
+}
+
+/// Walks into the shaft, waits until the gate is shut, and pushes until it is put elsewhere. Returns for how many ticks it
+/// pushed.
+int push_out_of_shaft(Rider& rider) {
+    do rider.push({1.4, 0, 0}, 0.1);
+    while (rider.time_s < 10 && rider.walker.feet().y > 0.01);
+    EXPECT_NEAR(rider.walker.feet().y, 0, 0.01) << "it is in the shaft";
+    rider.wait(gate_shuts_s + 0.5 - rider.time_s);
+    int ticks = 0;
+    const auto jumps = [&] { return rider.walker.returns() + rider.walker.freed(); };
+    for (const double until_s = rider.time_s + 8; rider.time_s < until_s && jumps() == 0; ++ticks) rider.step({1, 0, 0});
+    EXPECT_EQ(jumps(), 1U);
+    rider.push({0, 0, 0.5}, 1);
+    EXPECT_EQ(rider.walker.put_aside() + rider.walker.passed_through(), 0U) << "nothing is where it was put";
+    return ticks;
+}
+
+}  // namespace
+
+TEST(Moving, AStuckWalkerGoesBackToNoPlaceWhereSomethingMovesNow) {
+    Rider one(shaft_with_a_gate(1.65), {1.3, 2.6, 0});  // of the place at 1.8 m alone
+    push_out_of_shaft(one);
+    EXPECT_NEAR(one.eye.x, 1.3, 0.05) << "to where it stood up";
+    Rider few(shaft_with_a_gate(0.2), {-2, 2.6, 0});
+    push_out_of_shaft(few);
+    EXPECT_EQ(few.walker.returns(), 1U);
+    EXPECT_LT(few.eye.x, 0.2 - 0.3);
+    EXPECT_GT(few.eye.x, 0.2 - 1) << "to the nearest of those that are free";
+    Rider all(shaft_with_a_gate(-12), {-2, 2.6, 0});
+    push_out_of_shaft(all);
+    EXPECT_EQ(all.walker.freed(), 1U);
+    EXPECT_GT(all.eye.x, 5) << "all of the first platform is shut";
+}
+
+TEST(Moving, AStuckWalkerLooksAtFewPlacesATick) {
+    Rider first(shaft_with_a_gate(1.9), {-8, 2.6, 0}), last(shaft_with_a_gate(-6.2), {-8, 2.6, 0});
+    const int ticks_to_first = push_out_of_shaft(first), ticks_to_last = push_out_of_shaft(last);
+    EXPECT_GT(first.eye.x, 1);
+    EXPECT_LT(last.eye.x, -6.45);
+    EXPECT_GE(ticks_to_last - ticks_to_first, 6) << "fifteen places are shut";
+    EXPECT_LT(ticks_to_last - ticks_to_first, 12);
+}
+
 TEST(Moving, ALiftCarriesUpAndDownAndTheEyeKeepsItsHeight) {
     MovingScene scene = open_hall();
     scene.things.push_back(platform({-1, -0.1, -1}, {1, 0.02, 1}, {0, 4, 0}, 4));

@@ -161,6 +161,8 @@ private:
     [[nodiscard]] const dvec3& newest_free_place() const;
     void remember_free_place();
     void go_back();
+    void go_back_on();
+    void go_back_to_start(bool was_elsewhere);
     void prepare_near(const dvec3& feet, double reach_m);
     void gather_moving(const dvec3& feet, double from_s, double to_s);
     void move_along(double from_s, double to_s);
@@ -207,6 +209,7 @@ private:
     std::uint32_t free_first_ = 0, free_count_ = 0;
     std::uint32_t gone_back_ = 0;   ///< by how many places the last return went back, at least 1; 0: none, or to the start
     std::uint32_t new_places_ = 0;  ///< remembered since then
+    bool going_back_ = false;       ///< stuck, and its places are being looked at
     bool start_is_free_ = false;    ///< stood_up_at_ is a place to go back to
     std::uint64_t returns_ = 0, freed_ = 0;
 

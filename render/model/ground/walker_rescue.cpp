@@ -54,7 +54,7 @@ void Walker::stand_up() {
     feet_ = dvec3(eye_.x, supported_ ? std::max(under.floor, under.any) : eye_.y - body_.eye_m, eye_.z);
     stood_up_at_ = feet_;
     free_count_ = gone_back_ = new_places_ = 0;
-    start_is_free_ = false;
+    start_is_free_ = going_back_ = false;
     if (!supported_) {  // perhaps a vehicle's recorded path, whose heights are the road's
         const double above = footing(eye_, eye_.y + below_floor_m, eye_.y).floor;
         if (above > -walker_parts::infinity && is_free({eye_.x, above, eye_.z})) {
@@ -156,7 +156,7 @@ void Walker::stand_at(const dvec3& feet) {
     eye_ = feet + dvec3(0, body_.eye_m, 0);
     supported_ = true;
     support_ = no_thing;  // if it moves, the next step finds it
-    steep_ = searching_ = false;
+    steep_ = searching_ = going_back_ = false;
     fall_m_s = eye_m_s = 0;
     pushed_s_ = 0;
     trial_ = 0;
@@ -184,9 +184,11 @@ void Walker::watch(const dvec3& move, double dt_s) {
         tried_from_ = feet_;
         pushed_s_ = 0;
         trial_ = 0;
+        going_back_ = false;
         return;
     }
     if (move == dvec3(0.0)) return;
+    if (going_back_) return go_back_on();
     pushed_s_ += dt_s;
     if (pushed_s_ < stuck_after_s) return;
     if (trial_gets_on()) {
@@ -224,13 +226,28 @@ void Walker::go_back() {
         const std::uint32_t by = std::min(wanted, free_count_ - 1);
         gone_back_ = std::max(by, 1U);
         free_count_ -= by;
-        for (; free_count_ > 1 && !is_left_free(newest_free_place()); --free_count_) ++gone_back_;
+        going_back_ = true;
+        return go_back_on();
+    }
+    go_back_to_start(free_count_ > 0);
+}
+
+/// To the newest place that nothing which moves is at. A tick looks at few of them, as a search does.
+void Walker::go_back_on() {
+    for (std::uint32_t i = 0; i < search_a_tick && free_count_ > 0; ++i, --free_count_, ++gone_back_) {
+        if (!is_left_free(newest_free_place())) continue;
         ++returns_;
         stand_at(newest_free_place());
         return;
     }
-    const bool to_start = free_count_ > 0 && start_is_free_ && is_left_free(stood_up_at_);
+    if (free_count_ == 0) go_back_to_start(true);
+}
+
+/// To where it stood up, if it was elsewhere and nothing is there now. Else to the nearest free place.
+void Walker::go_back_to_start(bool was_elsewhere) {
+    const bool to_start = was_elsewhere && start_is_free_ && is_left_free(stood_up_at_);
     free_count_ = gone_back_ = 0;
+    going_back_ = false;
     if (to_start) {
         ++returns_;
         stand_at(stood_up_at_);
