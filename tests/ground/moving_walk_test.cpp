@@ -78,6 +78,26 @@ TEST(MovingWalk, WithoutMotionTheFloorStaysWhereItIs) {
     for (std::size_t slot = 20; slot < frames.size(); ++slot) ASSERT_NEAR(frames[slot].pose.position.y, 1.72, 1e-3) << slot;
 }
 
+/// A lift whose motion leads nowhere is what a lift that is held still is to be.
+TEST(MovingWalk, WithoutMotionRegionsAreThoseOfWhatStandsStill) {
+    test::MovingScene still = lift_hall();
+    still.things[0].stands = {{0, dvec3(0.0)}, {10, dvec3(0.0)}};
+    const std::vector<FramePose> frames = frames_of(lift_hall().model(), 4, 0, false), expected = frames_of(still.model(), 4, 0);
+    ASSERT_EQ(frames.size(), expected.size());
+    std::size_t known = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const PredictedRegion &held = frames[i].predicted, &rest = expected[i].predicted;
+        ASSERT_EQ(held.known, rest.known) << i;
+        ASSERT_EQ(held.carried_m, rest.carried_m) << i;
+        ASSERT_EQ(held.region.radius_m, rest.region.radius_m) << i;
+        ASSERT_EQ(held.region.angle_rad, rest.region.angle_rad) << i;
+        ASSERT_EQ(held.region.centre.position, rest.region.centre.position) << i;
+        known += held.known ? 1 : 0;
+    }
+    EXPECT_GT(known, 90U);
+    EXPECT_EQ(expected.back().predicted.carried_m, 0);
+}
+
 TEST(MovingWalk, RegionsHoldTheNextFramesOfALift) {
     const std::vector<FramePose> frames = frames_of(lift_hall().model(), 9, 0);
     std::size_t known = 0;

@@ -25,7 +25,7 @@ input::Ground Walking::ground(bool flies, double time_s) {
     walks_ = walker_ && !(flies && mode_ == rt::WalkingMode::automatic);
     if (!walks_) return {};
     walked_ = true;
-    walker_->set_time(still_ ? 0 : time_s);
+    walker_->set_time(time_s);
     const auto query = [](void* walker, const dvec3& from, const dvec3& wanted, double dt_s) noexcept {
         return static_cast<model::Walker*>(walker)->walk(from, wanted, dt_s);
     };

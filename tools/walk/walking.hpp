@@ -25,7 +25,9 @@ public:
     Walking(const model::Ground& ground, const model::Body& body, rt::WalkingMode mode, const model::Model* moving = nullptr);
 
     /// From now on all stands as at time 0. Before the first step.
-    void hold_still() { still_ = true; }
+    void hold_still() {
+        if (walker_) walker_->hold_still();
+    }
     /// What the next step asks. `flies`: the device that steers moves freely in space. `time_s`: since the walk began, of the
     /// step's end.
     [[nodiscard]] input::Ground ground(bool flies, double time_s = 0);
@@ -54,7 +56,7 @@ public:
 private:
     std::optional<model::Walker> walker_;
     rt::WalkingMode mode_;
-    bool still_ = false, walks_ = false, walked_ = false;
+    bool walks_ = false, walked_ = false;
     std::atomic<model::Barrier> shown_{model::Barrier::clear};
     std::atomic<bool> shown_walks_{false}, shown_freed_{false};
 };

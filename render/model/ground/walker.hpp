@@ -48,8 +48,10 @@ public:
 
     /// The time until which things move in the next step, seconds since the walk began. Up to max_pause_s back it stands still.
     /// Where it goes back or on by more, the eye counts as placed: what moved meanwhile neither carried nor pushed it.
-    void set_time(double time_s) { time_s_ = time_s; }
+    void set_time(double time_s) { time_s_ = holds_still_ ? 0 : time_s; }
     static constexpr double max_pause_s = 0.25;
+    /// From now on all stands as at time 0, and nothing is said to carry. Before the first step.
+    void hold_still() { holds_still_ = true; }
 
     /// What things that move did with the eye in the last step, and may do in the next ones.
     struct Ride {
@@ -214,6 +216,7 @@ private:
     std::uint64_t returns_ = 0, freed_ = 0;
 
     NearMoving moving_;
+    bool holds_still_ = false;
     double time_s_ = 0, stood_s_ = 0;   ///< of the next step, and of the last one
     std::uint32_t support_ = no_thing;  ///< what moves under the feet; of supported feet
     Ride ride_;

@@ -28,6 +28,7 @@ void Walker::gather_moving(const dvec3& feet, double from_s, double to_s) {
     Box box{feet - (body.radius + around_body_m), feet + (body.radius + around_body_m)};
     box.max.y = body.low.y + body.length + body.radius + around_body_m;
     moving_.gather(box, near_things_m, from_s, to_s);
+    if (holds_still_) return;  // else predictions are wider by speeds that are not there
     for (const NearMoving::Thing& thing : moving_.things()) {
         if (thing.speed_m_s > 0) ride_.max_m_s = std::max(ride_.max_m_s, thing.speed_m_s + max_push_m_s);
         ride_.max_turn_rad_s = std::max(ride_.max_turn_rad_s, thing.turn_rad_s);
