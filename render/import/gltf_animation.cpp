@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -16,7 +17,8 @@ namespace {
 constexpr std::size_t max_keys_of_motion = 1U << 16U;
 /// Of all tracks of a file: a translation and a rotation for each key that a model may have.
 constexpr std::uint64_t max_keys_of_file = 2 * std::uint64_t{model::max_motion_keys};
-constexpr double unit_slack = 0.01;  // exporters write rotations as rounded bytes
+constexpr double scale_slack = 1e-4;  // relative, of scales over 1
+constexpr double unit_slack = 0.01;   // exporters write rotations as rounded bytes
 
 Between between_of(const std::string& interpolation) {
     return interpolation == "STEP" ? Between::step : interpolation == "CUBICSPLINE" ? Between::spline : Between::linear;
@@ -44,16 +46,13 @@ AnimationReader::AnimationReader(const tinygltf::Model& model, const std::string
       first_motion_(scene.motions.size()) {
     if (model.animations.empty()) return;
     find_drawn();
-    count_keys();
-    if (keys_ > max_keys_of_file) return;
+    if (const std::uint64_t keys = count_keys(); keys > max_keys_of_file) {
+        flawed(Flaw::all_keys, fmt::format("All nodes are drawn at rest: their animations have {} keys, and a file may have {}",
+                                           keys, max_keys_of_file));
+        return;
+    }
     find_worlds();
     for (int a = 0; a < static_cast<int>(model.animations.size()); ++a) read_animation(a);
-}
-
-Result<void> AnimationReader::within_limits() const {
-    if (keys_ <= max_keys_of_file) return {};
-    return Error{file_, fmt::format("Its animations have {} keys, and a file may have {}", keys_, max_keys_of_file),
-                 "Export it with fewer keys a second, or with fewer animated nodes", ErrorKind::out_of_limits};
 }
 
 void AnimationReader::flawed(Flaw flaw, std::string text) {
@@ -97,6 +96,8 @@ const char* AnimationReader::remedy_of(Flaw flaw) {
             return "Apply the scale of the nodes above it";
         case Flaw::keys:
             return "Export fewer keys a second";
+        case Flaw::all_keys:
+            return "Export it with fewer keys a second, or with fewer animated nodes";
         case Flaw::depth:
             return "Let fewer animated nodes stand below each other";
         case Flaw::no_loop:
@@ -155,26 +156,27 @@ dmat4 AnimationReader::parent_world(std::size_t node) const {
     return parents_[node] < 0 ? dmat4(1.0) : worlds_[static_cast<std::size_t>(parents_[node])];
 }
 
-/// All that is read below, before any of it is: a small file may have one long track at many nodes.
-void AnimationReader::count_keys() {
+/// All keys that are kept below, before any is read: a small file may have one long track at many nodes.
+std::uint64_t AnimationReader::count_keys() const {
+    std::uint64_t keys = 0;
     std::vector<std::size_t> first(nodes_.size(), model_.animations.size());  // the animation that moves a node
     for (std::size_t a = 0; a < model_.animations.size(); ++a) {
         const tinygltf::Animation& animation = model_.animations[a];
         for (const tinygltf::AnimationChannel& channel : animation.channels) {
             if (!holds_index(nodes_, channel.target_node) || !holds_index(animation.samplers, channel.sampler)) continue;
             const auto node = static_cast<std::size_t>(channel.target_node);
-            const int values = animation.samplers[static_cast<std::size_t>(channel.sampler)].output;
-            if (!drawn_[node] || !holds_index(model_.accessors, values)) continue;
-            if (channel.target_path == "translation" || channel.target_path == "rotation") {
-                first[node] = std::min(first[node], a);
-                if (first[node] != a) continue;
-            } else if (channel.target_path != "scale") {
-                continue;
-            }
-            const std::size_t count = model_.accessors[static_cast<std::size_t>(values)].count;
-            if (count <= 3 * max_keys_of_motion) keys_ += count;
+            const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(channel.sampler)];
+            if (!drawn_[node] || model_.nodes[node].skin >= 0 || model_.nodes[node].matrix.size() == 16) continue;
+            if (!holds_index(model_.accessors, sampler.output)) continue;
+            if (channel.target_path != "translation" && channel.target_path != "rotation") continue;
+            first[node] = std::min(first[node], a);
+            if (first[node] != a) continue;
+            const std::size_t count = model_.accessors[static_cast<std::size_t>(sampler.output)].count;
+            const std::size_t values_a_key = between_of(sampler.interpolation) == Between::spline ? 3 : 1;
+            if (count <= 3 * max_keys_of_motion) keys += count / values_a_key;
         }
     }
+    return keys;
 }
 
 void AnimationReader::read_animation(int animation) {
@@ -295,21 +297,42 @@ bool AnimationReader::check_values(int node, bool rotation, Track& track) {
     return true;
 }
 
+AnimationReader::ScaleTrack AnimationReader::read_scales(int output, bool spline) const {
+    ScaleTrack track;
+    if (!holds_index(model_.accessors, output) ||
+        model_.accessors[static_cast<std::size_t>(output)].count > 3 * max_keys_of_motion)
+        return track;
+    const auto values = read_floats(model_, output, file_);
+    if (!values || values->components != 3) return track;
+    track.min = dvec3(std::numeric_limits<double>::infinity());
+    track.max = -track.min;
+    for (std::size_t i = 0; i < values->count(); ++i) {
+        const float* v = &values->values[3 * i];
+        const dvec3 value(v[0], v[1], v[2]);
+        if (!finite_values(dvec4(value, 0))) return track;
+        if (!spline || i % 3 == 1)
+            track.min = glm::min(track.min, value), track.max = glm::max(track.max, value);
+        else if (glm::any(glm::greaterThan(glm::abs(value), dvec3(scale_slack))))
+            return track;
+    }
+    track.usable = true;
+    return track;
+}
+
 /// Exporters write scales for every node, also where none changes.
 bool AnimationReader::scale_stays(int animation, const tinygltf::AnimationChannel& channel) {
     const tinygltf::AnimationSampler& sampler =
         model_.animations[static_cast<std::size_t>(animation)].samplers[static_cast<std::size_t>(channel.sampler)];
-    if (!holds_index(model_.accessors, sampler.output) ||
-        model_.accessors[static_cast<std::size_t>(sampler.output)].count > 3 * max_keys_of_motion)
-        return false;
-    const auto values = read_floats(model_, sampler.output, file_);
-    if (!values || values->components != 3) return false;
-    const std::vector<double>& rest = model_.nodes[static_cast<std::size_t>(channel.target_node)].scale;
     const bool spline = between_of(sampler.interpolation) == Between::spline;
-    for (std::size_t i = 0; i < values->values.size(); ++i) {
-        const bool tangent = spline && i / 3 % 3 != 1;
-        const double as_rest = tangent ? 0 : rest.size() == 3 ? rest[i % 3] : 1;
-        if (!(std::abs(values->values[i] - as_rest) <= 1e-4 * std::max(1.0, std::abs(as_rest)))) return false;
+    const auto [at, is_new] = scales_.try_emplace({sampler.output, spline});
+    if (is_new) at->second = read_scales(sampler.output, spline);
+    const ScaleTrack& track = at->second;
+    if (!track.usable) return false;
+    const std::vector<double>& rest = model_.nodes[static_cast<std::size_t>(channel.target_node)].scale;
+    for (int i = 0; i < 3; ++i) {
+        const double as_rest = rest.size() == 3 ? rest[static_cast<std::size_t>(i)] : 1;
+        const double slack = scale_slack * std::max(1.0, std::abs(as_rest));
+        if (track.min[i] < as_rest - slack || track.max[i] > as_rest + slack) return false;
     }
     return true;
 }

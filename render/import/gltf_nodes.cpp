@@ -283,7 +283,6 @@ Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, S
     const std::vector<StandInClaim> claims = stand_in_claims(model, scene.warnings);
     Walk walk(model, file, scene);
     AnimationReader animations(model, file, scene);
-    if (auto fits = animations.within_limits(); !fits) return fits;
     walk.animate(animations);
     for (const StandInClaim& claim : claims) walk.skip(claim.stand_in);
     for (const int root : roots_of(model, scene)) {

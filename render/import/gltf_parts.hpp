@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/import/lamps.hpp"
@@ -118,12 +120,11 @@ struct AnimatedNode {
     int animation = -1;  ///< none: it stands still
 };
 
-/// All animations of a file, read once. Then it makes the motions of the nodes that draw something, one after the other.
+/// All animations of a file, read once; of too many keys together none, and all nodes stand still. Then it makes the motions of
+/// the nodes that draw something, one after the other.
 class AnimationReader {
 public:
     AnimationReader(const tinygltf::Model& model, const std::string& file, Scene& scene);
-    /// Error "out of limits": all tracks together have too many keys. Then none of them was read.
-    [[nodiscard]] Result<void> within_limits() const;
     /// Adds the node's own motion to the scene, carried by that of its parent. Returns what moves the node: `outer` if it has
     /// none of its own. `parent`: its parent's frame to world, at rest.
     Index motion_of(int node, const NodePose& rest, const dmat4& parent, Index outer);
@@ -148,6 +149,7 @@ private:
         taken,
         shear,
         keys,
+        all_keys,
         depth,
         no_loop,
         count
@@ -163,6 +165,12 @@ private:
         bool known = false, back = false;  ///< back: it is played forth and back
     };
 
+    /// The bounds of a scale track's values, and whether it has none but finite ones and no slope.
+    struct ScaleTrack {
+        dvec3 min{0.0}, max{0.0};
+        bool usable = false;
+    };
+
     void flawed(Flaw flaw, std::string text);
     /// What the user can do: a whole sentence, without its full stop.
     static const char* remedy_of(Flaw flaw);
@@ -170,13 +178,14 @@ private:
     [[nodiscard]] std::string name_of_animation(int animation) const;
     void find_drawn();
     void find_worlds();
-    void count_keys();
+    [[nodiscard]] std::uint64_t count_keys() const;
     void read_animation(int animation);
     void read_channel(int animation, const tinygltf::AnimationChannel& channel);
     void refuse(int node, Flaw flaw, const std::string& why);
     bool read_track(int animation, const tinygltf::AnimationChannel& channel, bool rotation, Track& track);
     bool check_times(int node, Track& track);
     bool check_values(int node, bool rotation, Track& track);
+    [[nodiscard]] ScaleTrack read_scales(int output, bool spline) const;
     [[nodiscard]] bool scale_stays(int animation, const tinygltf::AnimationChannel& channel);
     void measure(int animation);
     [[nodiscard]] dmat4 parent_world(std::size_t node) const;
@@ -186,13 +195,13 @@ private:
     const std::string& file_;
     Scene& scene_;
     std::vector<AnimatedNode> nodes_;
-    std::vector<int> parents_;           ///< by node; -1: none
-    std::vector<dmat4> worlds_;          ///< by node
-    std::vector<bool> drawn_, refused_;  ///< by node: something at or below it is drawn; it stands still
-    std::vector<int> moved_;             ///< nodes of the animation that is read
-    std::uint64_t keys_ = 0;             ///< of all tracks
-    std::vector<Extent> extents_;        ///< by animation
-    std::vector<std::uint32_t> depths_;  ///< by motion of the scene
+    std::vector<int> parents_;                           ///< by node; -1: none
+    std::vector<dmat4> worlds_;                          ///< by node
+    std::vector<bool> drawn_, refused_;                  ///< by node: something at or below it is drawn; it stands still
+    std::vector<int> moved_;                             ///< nodes of the animation that is read
+    std::map<std::pair<int, bool>, ScaleTrack> scales_;  ///< by accessor and whether it has tangents: many nodes may share one
+    std::vector<Extent> extents_;                        ///< by animation
+    std::vector<std::uint32_t> depths_;                  ///< by motion of the scene
     std::size_t first_motion_ = 0;
     std::array<Flawed, static_cast<std::size_t>(Flaw::count)> flaws_;
 };
