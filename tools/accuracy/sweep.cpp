@@ -61,6 +61,7 @@ double Sweep::time_full(const Station& station, const std::vector<gl::DrawItem>&
     std::vector<double> ms;
     for (int i = 0; i < repeats; ++i) {
         const std::int64_t begun = rt::monotonic_ns();
+        engine.refresh_shadow(station.pose);
         engine.draw_unbudgeted(station.pose, items);
         ms.push_back(static_cast<double>(rt::monotonic_ns() - begun) * 1e-6);
     }
