@@ -20,6 +20,7 @@ using model::EffectMask;
 using Groups = std::vector<EffectMask>;
 
 constexpr EffectMask sun = model::effect_sun, shadow = model::effect_shadow, lamps = model::effect_lamps, fog = model::effect_fog;
+constexpr EffectMask moving_shadow = model::effect_moving_shadow;
 
 TEST(Light, EachSwitchHidesItsEffectsAndSunlightItsShadows) {
     const auto hidden = [](bool rt::Switches::*off) {
@@ -28,15 +29,17 @@ TEST(Light, EachSwitchHidesItsEffectsAndSunlightItsShadows) {
         return hidden_effects(on);
     };
     EXPECT_EQ(hidden_effects({}), 0U);
-    EXPECT_EQ(hidden(&rt::Switches::sunlight), sun | shadow);
-    EXPECT_EQ(hidden(&rt::Switches::shadows), shadow);
+    EXPECT_EQ(hidden(&rt::Switches::sunlight), sun | shadow | moving_shadow);
+    EXPECT_EQ(hidden(&rt::Switches::shadows), shadow | moving_shadow);
     EXPECT_EQ(hidden(&rt::Switches::lamps), lamps);
     EXPECT_EQ(hidden(&rt::Switches::fog), fog);
-    EXPECT_EQ(hidden_effects({false, false, false, false}), sun | shadow | lamps | fog);
+    EXPECT_EQ(hidden_effects({false, false, false, false}), sun | shadow | moving_shadow | lamps | fog);
 }
 
 TEST(Light, EveryGroupIsHiddenWholeByItsSwitch) {
-    for (const EffectMask called_for : {sun | shadow | lamps | fog, sun | fog, shadow | lamps, EffectMask{sun}}) {
+    for (const EffectMask called_for :
+         {sun | shadow | lamps | fog, sun | fog, shadow | lamps, EffectMask{sun}, sun | shadow | moving_shadow | lamps | fog,
+          sun | moving_shadow, shadow | moving_shadow, EffectMask{moving_shadow}}) {
         const Groups groups = switch_groups({}, true, called_for);
         for (const rt::Switch& one : rt::light_switches) {
             rt::Switches on;
@@ -130,13 +133,15 @@ protected:
     }
     void open(double rest_after_ms = 0) {
         test::SmallModel scene;
-        scene.square(scene.material(test::plain(0.8F, 0.7F, 0.6F, 1, sun | fog)), test::at(0, 0, -2), 1);
+        scene.square(scene.material(test::plain(0.8F, 0.7F, 0.6F, 1, sun | fog | shadows_)), test::at(0, 0, -2), 1);
+        if (shadows_ != 0) add_what_moves(scene);
         model::Model model = scene.finish();
         model.light.fog_visibility_m = 4;
         model.effects = {{sun, true, 2, "", true}, {fog, true, 2, "", true}};
+        if (shadows_ != 0) model.effects.push_back({shadows_, true, 2, "", true});
         EngineOptions options;
         options.device.viewport = {64, 48};
-        options.device.switches = switch_groups(request_, true, sun | fog);
+        options.device.switches = switch_groups(request_, true, sun | fog | shadows_);
         options.rest_after_ms = rest_after_ms;
         options.buys_effects = request_.buy_effects;
         auto opened = Engine::open(std::move(model), costs_, options);
@@ -151,6 +156,16 @@ protected:
         options_of_stages.budget_us = options_of_stages.limit_us = 20'000;
         stages_ = std::make_unique<WalkStages>(*engine_, *poses_source_, clock_, poses_, prepared_, *snapshots_, kept_,
                                                options_of_stages);
+    }
+    /// A square behind the eye. Of the other one, baked shadows take most of the sun.
+    static void add_what_moves(test::SmallModel& scene) {
+        model::Model& model = scene.model();
+        model.motions.push_back({dvec3(0), 0, 1, 1});
+        model.motion_keys.emplace_back();
+        model::Placement placement = test::at(0.3, 0.3, 1.5);
+        placement.motion = 0;
+        scene.square(scene.material(test::plain(0.2F, 0.4F, 0.6F, 1, sun)), placement, 0.2F);
+        model.sun_seen.assign(model.vertices.size(), {{51, 51}});
     }
     /// Returns the frame's record; picture() is what it shows.
     rt::FrameRecord frame(std::uint64_t slot) {
@@ -175,6 +190,7 @@ protected:
     }
 
     WalkRequest request_;
+    EffectMask shadows_ = 0;  ///< that the large square has as well
     model::CostModel costs_ = model::default_costs();
     Path path_;
     std::unique_ptr<Engine> engine_;
@@ -244,6 +260,26 @@ TEST_F(LightWalk, AWalkThatBeginsWithoutFogShowsNone) {
     EXPECT_NE(with, without);
     EXPECT_FALSE(snapshots_->snapshots()[0].light.on.fog);
     EXPECT_EQ(render_snapshot(*engine_, snapshots_->snapshots()[0])->full, without);
+}
+
+TEST_F(LightWalk, WhereThingsMoveSnapshotsHaveTheSunAndShadowsOfTheirFrames) {
+    shadows_ = shadow | moving_shadow;
+    std::vector<Pixels> shown;
+    for (const auto& [sunlight, shadows] : {std::pair{true, true}, {true, false}, {false, true}}) {
+        request_.sunlight = sunlight;
+        request_.shadows = shadows;
+        stages_.reset();
+        ASSERT_NO_FATAL_FAILURE(open());
+        frame(0);
+        shown.push_back(picture());
+        if (sunlight && shadows) continue;  // full detail has no shadow of what moves
+        auto again = render_snapshot(*engine_, snapshots_->snapshots()[0]);
+        ASSERT_TRUE(again.ok()) << again.error().text();
+        EXPECT_EQ(again->walk, shown.back()) << (sunlight ? "without shadows" : "without sunlight");
+        EXPECT_EQ(again->full, shown.back()) << "its full detail is compared in the same light";
+    }
+    EXPECT_NE(shown[0], shown[1]) << "the test would see a shadow";
+    EXPECT_NE(shown[1], shown[2]) << "and the sun";
 }
 
 TEST_F(LightWalk, AnHourThatRunsIsShownAtRestToo) {

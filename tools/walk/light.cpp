@@ -12,8 +12,9 @@ static_assert(rt::switch_count <= gl::max_switches);
 
 model::EffectMask hidden_effects(const rt::Switches& on) {
     model::EffectMask hidden = 0;
-    if (!on.sunlight) hidden |= model::effect_sun | model::effect_shadow;
-    if (!on.shadows) hidden |= model::effect_shadow;
+    constexpr model::EffectMask shadows = model::effect_shadow | model::effect_moving_shadow;
+    if (!on.sunlight) hidden |= model::effect_sun | shadows;
+    if (!on.shadows) hidden |= shadows;
     if (!on.lamps) hidden |= model::effect_lamps;
     if (!on.fog) hidden |= model::effect_fog;
     return hidden;
@@ -21,15 +22,10 @@ model::EffectMask hidden_effects(const rt::Switches& on) {
 
 namespace {
 
-/// Shadows of what moves go with those of what stands.
-model::EffectMask with_moving(model::EffectMask hidden) {
-    return (hidden & model::effect_shadow) != 0 ? hidden | model::effect_moving_shadow : hidden;
-}
-
 model::EffectMask group_of(const rt::Switch& one) {
     rt::Switches without;
     without.*one.on = false;
-    return with_moving(hidden_effects(without));
+    return hidden_effects(without);
 }
 
 }  // namespace
@@ -52,7 +48,7 @@ float hour_at(const config::Settings& settings, double walk_s) {
 }
 
 void show_light(Engine& engine, const rt::ShownLight& light) {
-    engine.hide_effects(with_moving(hidden_effects(light.on)));
+    engine.hide_effects(hidden_effects(light.on));
     if (rt::has_hour(light))
         engine.set_light(model::daylight_at(static_cast<double>(light.hour), engine.model().light), light.hour);
 }

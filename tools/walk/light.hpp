@@ -13,7 +13,7 @@
 
 namespace surefoot::walk {
 
-/// The effects that are left out. Without sunlight nothing has a shadow.
+/// The effects that are left out. Without sunlight nothing has a shadow. Shadows of what moves go with those of what stands.
 model::EffectMask hidden_effects(const rt::Switches& on);
 
 /// gl::DeviceOptions::switches of a walk: for each switch, what it hides of the effects that the model calls for. Only of those
