@@ -10,7 +10,9 @@ void Engine::Impl::offer_shadow(const prepare::PreparedFrame& set) {
     shadow_due = false;
     if (!shadow.any()) return;
     shadow_eye = {set.region.centre, set.viewport, set.region.radius_m, set.region.angle_rad};
-    if ((hidden & model::effect_moving_shadow) != 0 || !shadow.plan(shadow_scene(), shadow_eye)) return;
+    if ((gl::left_out(options.device.switches, hidden) & model::effect_moving_shadow) != 0 ||
+        !shadow.plan(shadow_scene(), shadow_eye))
+        return;
     const float us = shadow.price_us(model, costs), worth_now = shadow.value(shadow_scene(), shadow_eye);
     if (worth_now > 0.0F) offered.offer({select::ItemKind::refresh, shadow_item, us, worth_now});
 }
@@ -34,7 +36,7 @@ void Engine::Impl::begin_shadow(const Pose& pose, SubmitReport& report) {
 bool Engine::refresh_shadow(const Pose& pose) {
     Impl& e = *impl_;
     e.draws.plays();
-    if ((e.hidden & model::effect_moving_shadow) != 0 || !e.shadow.any() ||
+    if ((gl::left_out(e.options.device.switches, e.hidden) & model::effect_moving_shadow) != 0 || !e.shadow.any() ||
         !e.shadow.plan(e.shadow_scene(), {pose, e.options.device.viewport}))
         return false;
     e.device->draws.plays();

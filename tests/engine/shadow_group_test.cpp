@@ -1,0 +1,103 @@
+// The shadow map of what moves as a part of groups of effects: hidden whole or not, bought with them, and left out with them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/bake/bake.hpp"
+#include "render/engine.hpp"
+#include "tests/bake/moving_scene.hpp"
+
+namespace surefoot {
+namespace {
+
+constexpr model::EffectMask group_sun = model::effect_sun, group_shadow = model::effect_shadow,
+                            group_moving = model::effect_moving_shadow;
+
+/// A ball circles over a lawn.
+model::Model baked_yard() {
+    importer::Scene scene;
+    scene.sources = {"by hand"};
+    scene.materials.resize(2);
+    scene.materials[1].colour = {0.8F, 0.2F, 0.1F, 1};
+    const auto lawn = bake::add_mesh(
+        scene, bake::grid_surface(20, 20, [](float u, float v) { return vec3(40 * v - 20, 0, 40 * u - 20); }), "lawn");
+    importer::Primitive red = bake::ball(12, 1);
+    red.material = 1;
+    bake::place(scene, lawn, dvec3(0));
+    bake::place_moving(scene, bake::add_mesh(scene, red, "ball"), dvec3(5, 3, 0),
+                       bake::add_turn(scene, dvec3(0, 3, 0), dvec3(0, 1, 0), 8));
+    auto m = bake::bake(scene, {}, {});
+    EXPECT_TRUE(m.ok());
+    return std::move(*m);
+}
+
+/// `shaded`: something unseen takes most of the lawn's sun, as baked.
+model::Model yard_model(bool shaded) {
+    static const model::Model baked = baked_yard();
+    model::Model m = baked;
+    if (!shaded) return m;
+    const auto add_shadow = [](model::EffectMask& effects) {
+        if ((effects & group_moving) != 0) effects |= group_shadow;
+    };
+    for (model::Material& material : m.materials) add_shadow(material.effects);
+    for (model::Representation& rep : m.reps) add_shadow(rep.effects);
+    for (model::EffectFinding& finding : m.effects) finding.called_for |= finding.bit == group_shadow;
+    m.sun_seen.assign(m.vertices.size(), {{51, 51}});
+    return m;
+}
+
+/// Frames of an engine that buys its effects, or not.
+struct YardFrames {
+    std::unique_ptr<Engine> engine;
+    prepare::PreparedFrame prepared;
+    Pose pose;
+
+    YardFrames(bool shaded, std::vector<model::EffectMask> switches, bool buys, model::CostModel costs = model::default_costs()) {
+        pose.position = dvec3(0, 12, 20);
+        pose.orientation = glm::quatLookAt(glm::normalize(-pose.position), dvec3(0, 1, 0));
+        EngineOptions options;
+        options.device.kind = gl::BackendKind::null;
+        options.device.viewport = {320, 180};
+        options.device.switches = std::move(switches);
+        options.buys_effects = buys;
+        auto opened = Engine::open(yard_model(shaded), costs, options);
+        EXPECT_TRUE(opened.ok());
+        engine = std::move(*opened);
+        engine->device().draws.plays();
+        engine->reserve(prepared);
+    }
+    SubmitReport frame(double time_s, double budget_us = 1e6) {
+        engine->device().draws.plays();
+        PrepareHints hints;
+        hints.time_s = time_s;
+        engine->prepare({pose, 0.25, 0.06}, 0, 0, 0, prepared, hints);
+        engine->set_time(time_s);
+        engine->select(prepared, budget_us, {}, 0);
+        SubmitLimits limits;
+        limits.limit_us = 1e6;
+        return engine->submit(pose, limits);
+    }
+    [[nodiscard]] bool offers_a_refresh() const {
+        const std::span<const select::Item> list = engine->offered().offered();
+        return std::any_of(list.begin(), list.end(), [](const auto& item) { return item.kind == select::ItemKind::refresh; });
+    }
+};
+
+TEST(ShadowGroups, OtherGroupsThatAreHiddenLeaveTheMap) {
+    YardFrames yard(false, {group_sun}, false);
+    yard.engine->hide_effects(~model::EffectMask{0});  // all that has a switch: the sun alone
+    EXPECT_TRUE(yard.engine->refresh_shadow(yard.pose));
+    const SubmitReport report = yard.frame(3);
+    EXPECT_TRUE(report.shadow_refreshed && report.shadow_shown);
+    YardFrames hidden(false, {group_moving}, false);
+    hidden.engine->hide_effects(~model::EffectMask{0});
+    EXPECT_FALSE(hidden.engine->refresh_shadow(hidden.pose));
+    EXPECT_FALSE(hidden.frame(3).shadow_shown);
+}
+
+}  // namespace
+}  // namespace surefoot
