@@ -276,7 +276,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
     e.take_filter();
     e.take_effects(prepared);
-    e.shadow_due = e.shadow.any() && e.was_bought({select::ItemKind::refresh, Impl::shadow_item});
+    e.take_shadow();
     if (e.filtered || e.lever.shown != 0) e.price_slices();
     return e.cut;
 }

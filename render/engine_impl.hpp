@@ -142,6 +142,7 @@ struct Engine::Impl {
     }
     [[nodiscard]] ShadowScene shadow_scene() const REQUIRES(draws);
     void offer_shadow(const prepare::PreparedFrame& set) REQUIRES(draws);
+    void take_shadow() REQUIRES(draws);
     void begin_shadow(const Pose& pose, SubmitReport& report) REQUIRES(draws);
     void prepay_resolution(const prepare::PreparedFrame& set) REQUIRES(draws);
     void report_items(SubmitReport& report) const REQUIRES(draws);

@@ -5,16 +5,24 @@ namespace surefoot {
 
 ShadowScene Engine::Impl::shadow_scene() const { return {model, moving, light, time_s}; }
 
-/// Where it may be seen from until the next one is planned.
+/// Where it may be seen from until the next one is planned. None is offered while pictures are drawn without it.
 void Engine::Impl::offer_shadow(const prepare::PreparedFrame& set) {
     shadow_due = false;
     if (!shadow.any()) return;
     shadow_eye = {set.region.centre, set.viewport, set.region.radius_m, set.region.angle_rad};
-    if ((gl::left_out(options.device.switches, hidden) & model::effect_moving_shadow) != 0 ||
-        !shadow.plan(shadow_scene(), shadow_eye))
-        return;
+    if ((drawn_without() & model::effect_moving_shadow) != 0 || !shadow.plan(shadow_scene(), shadow_eye)) return;
     const float us = shadow.price_us(model, costs), worth_now = shadow.value(shadow_scene(), shadow_eye);
     if (worth_now > 0.0F) offered.offer({select::ItemKind::refresh, shadow_item, us, worth_now});
+}
+
+/// After the effects. Where the same selection left its group out, the map is not drawn, and its time stays free.
+void Engine::Impl::take_shadow() {
+    shadow_due = shadow.any() && was_bought({select::ItemKind::refresh, shadow_item});
+    if (!shadow_due || (drawn_without() & model::effect_moving_shadow) == 0) return;
+    shadow_due = false;
+    const std::span<const select::Item> list = offered.offered();
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (list[i].name() == select::ItemName{select::ItemKind::refresh, shadow_item}) cut.bought.cancel(i, list[i]);
 }
 
 /// Before a picture begins: the bought map is drawn with it. An old one is shown while it is good enough.

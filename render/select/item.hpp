@@ -75,6 +75,13 @@ struct BoughtItems {
     double prepaid_us = 0;
     double value = 0;  ///< of all
     [[nodiscard]] bool has(std::size_t i) const { return (set >> i & 1U) != 0; }
+    /// Item i of the list, which was bought, is not used after all. Its time stays free.
+    void cancel(std::size_t i, const Item& item) {
+        set &= ~(std::uint64_t{1} << i);
+        --count;
+        (item.prepaid ? prepaid_us : cost_us) -= static_cast<double>(item.cost_us);
+        value -= static_cast<double>(item.value);
+    }
 };
 
 /// The names of what the last frame bought, for hysteresis.

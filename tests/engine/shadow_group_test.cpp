@@ -99,5 +99,22 @@ TEST(ShadowGroups, OtherGroupsThatAreHiddenLeaveTheMap) {
     EXPECT_FALSE(hidden.frame(3).shadow_shown);
 }
 
+TEST(ShadowGroups, NoRefreshIsBoughtWhereShadowsAreDropped) {
+    model::CostModel costs = model::default_costs();
+    costs.prices = {{group_shadow, 0, 0, 1e5F}};
+    YardFrames yard(true, {group_sun | group_shadow | group_moving, group_shadow | group_moving}, true, costs);
+    for (int i = 0; i < 5; ++i) {
+        const SubmitReport report = yard.frame(1 + 0.1 * i, 20'000);
+        ASSERT_TRUE(yard.engine->effect_sales()[1].dropped);
+        EXPECT_FALSE(yard.engine->effect_sales()[0].dropped) << "the sun costs nothing";
+        EXPECT_FALSE(report.shadow_refreshed || report.shadow_shown);
+        EXPECT_EQ(yard.offers_a_refresh(), i == 0) << "the first frame does not know it yet, frame " << i;
+        EXPECT_FALSE(yard.engine->bought(select::ItemKind::refresh, 0)) << i;
+        EXPECT_EQ(report.bought_items, 0U) << i;
+        EXPECT_EQ(report.bought_us, 0) << i;
+        EXPECT_NEAR(report.finished_us, report.predicted_us, 1e-3 * report.predicted_us) << i;
+    }
+}
+
 }  // namespace
 }  // namespace surefoot
