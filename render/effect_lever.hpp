@@ -49,7 +49,7 @@ struct EffectLever {
     model::ItemCost forms;                                            ///< of these forms, without the groups
     bool known = false;                                               ///< there was a cut
     model::EffectMask left_out = 0;                                   ///< whole groups that the next pictures are drawn without
-    model::EffectMask shown = 0;  ///< own effects of all other groups: beyond the set's prices
+    model::EffectMask shown = 0;  ///< priced effects of all other groups: beyond the set's prices
     double spent_us = 0;          ///< of what the last selection bought: these groups
 
     [[nodiscard]] std::span<const EffectGroup> all() const { return std::span(groups).first(count); }

@@ -141,12 +141,19 @@ constexpr std::size_t nodes_ahead = 256;  // in a call: a fraction of a millisec
 std::vector<EffectGroup> groups_of(std::span<const model::EffectMask> switches) {
     std::vector<EffectGroup> groups;
     for (const model::EffectMask mask : switches) {
-        model::EffectMask own = mask & ~model::effect_moving_shadow;  // its map is an item by itself
+        model::EffectMask priced = mask;
         for (const model::EffectMask other : switches)
-            if (other != mask && (other & ~mask) == 0) own &= ~other;
-        groups.push_back({mask, own});
+            if (other != mask && (other & ~mask) == 0) priced &= ~other;
+        groups.push_back({mask, priced & ~model::effect_moving_shadow, priced});  // its map is an item by itself
     }
     return groups;
+}
+
+std::vector<EffectGroup> groups_for_sale(std::span<const model::EffectMask> switches) {
+    std::vector<model::EffectMask> sold;
+    for (const EffectGroup& group : groups_of(switches))
+        if (group.own != 0) sold.push_back(group.mask);
+    return groups_of(sold);
 }
 
 EffectWorth::EffectWorth(const model::Model& model, std::span<const EffectGroup> groups, std::span<const double> hours,

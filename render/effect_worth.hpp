@@ -14,13 +14,16 @@ namespace surefoot {
 
 /// A group of effects that can be left out together, by DeviceOptions::switches.
 struct EffectGroup {
-    model::EffectMask mask = 0;  ///< the switch: all that is left out
-    model::EffectMask own = 0;   ///< what no smaller group holds: its price and worth are of these
+    model::EffectMask mask = 0;    ///< the switch: all that is left out
+    model::EffectMask own = 0;     ///< what no smaller group holds: its worth is of these
+    model::EffectMask priced = 0;  ///< own, and reading the map of what moves: its price is of these
 };
 static_assert(prepare::max_effect_groups == gl::max_switches);
 
 /// The groups of some switches. Sunlight leaves out sun and shadows; the shadows are the smaller group's own.
 std::vector<EffectGroup> groups_of(std::span<const model::EffectMask> switches);
+/// Those that own something, and so may be bought. What only the others have of the price goes to the larger ones.
+std::vector<EffectGroup> groups_for_sale(std::span<const model::EffectMask> switches);
 
 /// Differences by node, group and light. Each leaf is shaded at points of its full detail with and without the group: the mean
 /// squared difference of the colours counts. A cluster has the mean of its leaves, by their size. Losses of forms are measured

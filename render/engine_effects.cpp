@@ -35,8 +35,7 @@ std::vector<model::Index> restless_nodes(const model::Model& model, const model:
 }
 
 void Engine::Impl::reserve_effects() {
-    std::vector<EffectGroup> groups = groups_of(options.device.switches);
-    std::erase_if(groups, [](const EffectGroup& group) { return group.own == 0; });
+    const std::vector<EffectGroup> groups = groups_for_sale(options.device.switches);
     lever.count = std::min(groups.size(), lever.groups.size());
     std::copy_n(groups.begin(), lever.count, lever.groups.begin());
     worth = EffectWorth(model, lever.all(), options.effect_hours, options.device.sky);
@@ -62,6 +61,12 @@ model::ItemCost Engine::Impl::effects_of(model::Index rep, float surface_px, mod
     return preparer->item_costs().of_effects(rep, surface_px * drawn_resolution * drawn_resolution, effects);
 }
 
+/// What costs the group's time: without what another switch left out of it.
+model::EffectMask Engine::Impl::priced_now(std::size_t g) const {
+    const EffectGroup& group = lever.groups[g];
+    return group.own | (group.priced & ~gl::left_out(options.device.switches, hidden));
+}
+
 /// By the forms of the last cut: a frame shows much of what the last one showed. Before there was one, by full detail.
 void Engine::Impl::price_groups(const prepare::PreparedFrame& set) {
     if (lever.known) return;
@@ -70,8 +75,7 @@ void Engine::Impl::price_groups(const prepare::PreparedFrame& set) {
     for (const prepare::Candidate& candidate : set.candidates) {
         if (candidate.child_count > 0) continue;
         const prepare::Choice& finest = set.choices[candidate.first_choice + candidate.choice_count - 1];
-        for (std::size_t g = 0; g < lever.count; ++g)
-            lever.costs[g] += effects_of(finest.rep, finest.surface_px, lever.groups[g].own);
+        for (std::size_t g = 0; g < lever.count; ++g) lever.costs[g] += effects_of(finest.rep, finest.surface_px, priced_now(g));
     }
 }
 
@@ -134,7 +138,7 @@ void Engine::Impl::take_effects(const prepare::PreparedFrame& set) {
             lever.dwell[g].answer(shows[g]);
             if (shows[g]) lever.spent_us += static_cast<double>(lever.offered_us[g]);
         }
-        if (shows[g]) lever.shown |= group.own;
+        if (shows[g]) lever.shown |= group.priced;
     }
     lever.shown &= ~(lever.left_out | hidden) & set.without;
     learn_effects();
@@ -149,8 +153,7 @@ void Engine::Impl::learn_effects() {
     for (const select::CutItem& item : cut.items) {
         const prepare::Choice& choice = choices[item.choice];
         lever.forms += choice.cost;
-        for (std::size_t g = 0; g < lever.count; ++g)
-            lever.costs[g] += effects_of(choice.rep, choice.surface_px, lever.groups[g].own);
+        for (std::size_t g = 0; g < lever.count; ++g) lever.costs[g] += effects_of(choice.rep, choice.surface_px, priced_now(g));
     }
 }
 

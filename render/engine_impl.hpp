@@ -117,6 +117,7 @@ struct Engine::Impl {
     void take_filter() REQUIRES(draws);
     void reserve_effects() REQUIRES(draws);
     void price_without() REQUIRES(draws);
+    [[nodiscard]] model::EffectMask priced_now(std::size_t g) const REQUIRES(draws);
     void price_groups(const prepare::PreparedFrame& set) REQUIRES(draws);
     void share_budget(const prepare::PreparedFrame& set, double room_us) REQUIRES(draws);
     void offer_effects(const prepare::PreparedFrame& set, double room_us) REQUIRES(draws);

@@ -36,6 +36,21 @@ TEST(EffectGroups, ASwitchOwnsWhatNoSmallerOneHas) {
     EXPECT_EQ(groups[2].own, effect_fog);
 }
 
+TEST(EffectGroups, ReadingTheMapOfWhatMovesIsPricedWithTheSmallestGroupThatIsForSale) {
+    constexpr model::EffectMask moving = model::effect_moving_shadow;
+    const std::vector<EffectGroup> both =
+        groups_for_sale(std::vector<model::EffectMask>{effect_sun | effect_shadow | moving, effect_shadow | moving, effect_fog});
+    ASSERT_EQ(both.size(), 3U);
+    EXPECT_EQ(both[0].priced, effect_sun);
+    EXPECT_EQ(both[1].own, effect_shadow);
+    EXPECT_EQ(both[1].priced, effect_shadow | moving);
+    EXPECT_EQ(both[2].priced, effect_fog);
+    const std::vector<EffectGroup> of_sun = groups_for_sale(std::vector<model::EffectMask>{effect_sun | moving, moving});
+    ASSERT_EQ(of_sun.size(), 1U) << "the map is an item by itself";
+    EXPECT_EQ(of_sun[0].own, effect_sun);
+    EXPECT_EQ(of_sun[0].priced, effect_sun | moving);
+}
+
 TEST(EffectWorth, IsTheMeanSquaredDifferenceOfTheColours) {
     SmallModel small;
     const auto lit = small.square(small.material(test::plain(0.5F, 0.4F, 0.2F, 1, effect_sun | effect_fog)), test::at(0, 0, -3));

@@ -99,6 +99,25 @@ TEST(ShadowGroups, OtherGroupsThatAreHiddenLeaveTheMap) {
     EXPECT_FALSE(hidden.frame(3).shadow_shown);
 }
 
+TEST(ShadowGroups, FramesThatBuyEffectsPredictTheReadingOfTheMap) {
+    for (const bool shaded : {false, true}) {
+        const model::EffectMask shadows = (shaded ? group_shadow : 0) | group_moving;
+        YardFrames yard(shaded, {group_sun | shadows, shadows}, true);
+        for (const double time_s : {1.0, 1.1, 1.1}) {
+            const SubmitReport report = yard.frame(time_s);
+            EXPECT_TRUE(report.shadow_shown);
+            for (const EffectSale& sale : yard.engine->effect_sales()) EXPECT_FALSE(sale.dropped);
+            EXPECT_NEAR(report.finished_us, report.predicted_us, 1e-3 * report.predicted_us) << shaded << " at " << time_s;
+        }
+        yard.engine->hide_effects(shadows);
+        for (const double time_s : {1.2, 1.3}) {
+            const SubmitReport report = yard.frame(time_s);
+            EXPECT_FALSE(report.shadow_shown);
+            EXPECT_NEAR(report.finished_us, report.predicted_us, 1e-3 * report.predicted_us) << shaded << " at " << time_s;
+        }
+    }
+}
+
 TEST(ShadowGroups, NoRefreshIsBoughtWhereShadowsAreDropped) {
     model::CostModel costs = model::default_costs();
     costs.prices = {{group_shadow, 0, 0, 1e5F}};
