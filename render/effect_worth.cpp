@@ -134,7 +134,16 @@ float size_of(const Box& box) {
     return box.empty() || !std::isfinite(outline) ? 0.0F : static_cast<float>(outline);
 }
 
-constexpr std::size_t nodes_ahead = 256;  // in a call: a fraction of a millisecond
+// Leaves shaded in a call, each about a microsecond: where a light is missing, and before it is needed.
+constexpr std::size_t missing_nodes = 2048, nodes_ahead = 256;
+constexpr std::size_t sums_a_node = 32;  // take as long as a leaf
+constexpr std::size_t whole_light = ~std::size_t{0} / sums_a_node;
+
+/// Hours from one to another, forwards.
+double hours_on(double from, double to) {
+    const double hours = std::fmod(to - from, 24.0);
+    return hours < 0 ? hours + 24.0 : hours;
+}
 
 }  // namespace
 
@@ -185,72 +194,115 @@ EffectWorth::EffectWorth(const model::Model& model, std::span<const EffectGroup>
     }
 }
 
-/// Goes on with a light, up to so many nodes.
-void EffectWorth::go_on(std::size_t moment, std::size_t max_nodes) {
-    if (pass_.moment != moment) pass_ = {moment, 0, 0};
-    const vec3 fog = vec3(sky_[0], sky_[1], sky_[2]) * moments_[moment].background;
+/// Goes on with a light, or with the one that was begun. Returns the steps that are left.
+std::size_t EffectWorth::go_on(std::size_t moment, std::size_t max_steps) {
+    if (pass_.moment == moments_.size()) pass_ = {moment, 0, 0, 0};
+    const std::size_t leaves = std::min(max_steps, nodes_ - pass_.node);
+    shade(pass_.node + leaves);
+    max_steps -= leaves;
+    if (pass_.node < nodes_) return 0;
+    const std::size_t sums = std::min(max_steps * sums_a_node, nodes_ * groups_.size() - pass_.summed);
+    go_up(pass_.summed + sums);
+    if (pass_.summed < nodes_ * groups_.size()) return 0;
+    known_[pass_.moment] = started_ = true;
+    pass_.moment = moments_.size();
+    return max_steps - (sums + sums_a_node - 1) / sums_a_node;
+}
+
+/// Leaves up to a node.
+void EffectWorth::shade(std::size_t end) {
+    const vec3 fog = vec3(sky_[0], sky_[1], sky_[2]) * moments_[pass_.moment].background;
     LeafPoints points;
-    const std::size_t end = pass_.node + std::min(max_nodes, nodes_ - pass_.node);
     for (; pass_.node < end; ++pass_.node) {
         const model::Node& node = model_->nodes[pass_.node];
         if (node.child_count > 0) continue;
         collect_points(*model_, mean_texels_, node, points);
-        const LeafWorth worth = worth_of_leaf(points.all(), groups_, moments_[moment], fog);
+        const LeafWorth worth = worth_of_leaf(points.all(), groups_, moments_[pass_.moment], fog);
         pass_.energy += weight_[pass_.node] * worth.energy;
-        for (std::size_t g = 0; g < groups_.size(); ++g) losses_of(moment, g)[pass_.node] = worth.losses[g];
+        for (std::size_t g = 0; g < groups_.size(); ++g) losses_of(pass_.moment, g)[pass_.node] = worth.losses[g];
     }
-    if (pass_.node == nodes_) finish();
 }
 
-/// All leaves of the light are known.
-void EffectWorth::finish() {
+/// All leaves of the light are known. A cluster's loss is the mean of its leaves', by their size.
+void EffectWorth::go_up(std::size_t end) {
     constexpr double darkest = 0.01;
-    const double bright = own_energy_ > 0 ? std::clamp(pass_.energy / own_energy_, darkest, 1.0) : 1.0;
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-        for (float& loss : losses_of(pass_.moment, g)) loss /= static_cast<float>(bright);
-        go_up(losses_of(pass_.moment, g));
-    }
-    known_[pass_.moment] = true;
-    pass_.moment = moments_.size();
-}
-
-/// A cluster's loss is the mean of its leaves', by their size.
-void EffectWorth::go_up(std::span<float> loss) {
-    std::fill(sum_.begin(), sum_.end(), 0.0);
-    for (std::size_t n = nodes_; n-- > 0;) {
+    const auto bright = static_cast<float>(own_energy_ > 0 ? std::clamp(pass_.energy / own_energy_, darkest, 1.0) : 1.0);
+    for (; pass_.summed < end; ++pass_.summed) {
+        const std::span<float> loss = losses_of(pass_.moment, pass_.summed / nodes_);
+        const std::size_t n = nodes_ - 1 - pass_.summed % nodes_;
         const model::Node& node = model_->nodes[n];
-        if (node.child_count == 0) sum_[n] = weight_[n] * static_cast<double>(loss[n]);
-        loss[n] = weight_[n] > 0 ? static_cast<float>(sum_[n] / weight_[n]) : loss[n];
+        if (node.child_count == 0) sum_[n] = weight_[n] * static_cast<double>(loss[n] / bright);
+        loss[n] = weight_[n] > 0 ? static_cast<float>(sum_[n] / weight_[n]) : loss[n] / bright;
         if (node.parent != model::none) sum_[node.parent] += sum_[n];
+        sum_[n] = 0;  // for the next group
     }
 }
 
-/// The day goes on, or back: the lights of the hours around are soon needed.
-void EffectWorth::look_ahead(std::size_t after) {
+/// The day goes on, or back: the lights of the hours that come next are soon needed, then perhaps those on the other side.
+void EffectWorth::look_ahead(const Between& now) {
     const std::size_t count = moments_.size();
-    for (const std::size_t by : {std::size_t{1}, std::size_t{2}, count - 2, count - 3}) {
-        const std::size_t moment = (after + by) % count;
-        if (!known_[moment]) return go_on(moment, nodes_ahead);
+    if (pass_.moment < count) {
+        go_on(pass_.moment, nodes_ahead);
+        return;
     }
+    const std::array<std::size_t, 2> later{now.after + 1, now.after + 2}, earlier{now.before + count - 1, now.before + count - 2};
+    for (const std::array<std::size_t, 2>& side : {day_runs_ < 0 ? earlier : later, day_runs_ < 0 ? later : earlier}) {
+        for (const std::size_t moment : side) {
+            if (known_[moment % count]) continue;
+            go_on(moment % count, nodes_ahead);
+            return;
+        }
+    }
+}
+
+/// Which way the day runs.
+void EffectWorth::follow(double hour) {
+    const double on = hours_on(last_hour_, hour);
+    if (started_ && on > 0) day_runs_ = on > 12 ? -1 : 1;
+    last_hour_ = hour;
+}
+
+/// A part of what is missing. A light that was begun is finished first, or a fast day would never have one.
+void EffectWorth::work(const Between& wanted) {
+    const auto all_known = [&] { return known_[wanted.before] && known_[wanted.after]; };
+    std::size_t left = started_ ? missing_nodes : whole_light;
+    if (pass_.moment < moments_.size() && !all_known()) left = go_on(pass_.moment, left);
+    const bool back = day_runs_ < 0;
+    for (const std::size_t moment : {back ? wanted.before : wanted.after, back ? wanted.after : wanted.before})
+        if (!known_[moment] && left > 0) left = go_on(moment, left);
+    if (moments_.size() > 3 && day_runs_ != 0 && all_known()) look_ahead(wanted);
+}
+
+EffectWorth::Between EffectWorth::around(double hour) const {
+    if (hours_.empty()) return {};
+    const auto next = std::upper_bound(hours_.begin(), hours_.end(), hour);
+    const std::size_t after = std::min<std::size_t>(static_cast<std::size_t>(next - hours_.begin()), hours_.size() - 1);
+    const std::size_t before = next == hours_.begin() ? 0 : static_cast<std::size_t>(next - hours_.begin()) - 1;
+    const double apart = hours_[after] - hours_[before];
+    return {before, after, apart > 0 ? static_cast<float>((hour - hours_[before]) / apart) : 0.0F};
+}
+
+/// Where one of them is missing, the nearest known light, round the clock. Some light is known.
+EffectWorth::Between EffectWorth::known_around(const Between& wanted, double hour) const {
+    if (known_[wanted.before] && known_[wanted.after]) return wanted;
+    const std::size_t count = moments_.size();
+    std::size_t before = wanted.before, after = wanted.after;
+    while (!known_[before]) before = (before + count - 1) % count;
+    while (!known_[after]) after = (after + 1) % count;
+    const bool later = hours_on(hour, hours_[after]) < hours_on(hours_[before], hour);
+    return {later ? after : before, later ? after : before, 0.0F};
 }
 
 std::array<prepare::EffectLoss, prepare::max_effect_groups> EffectWorth::at(float hour) {
     std::array<prepare::EffectLoss, prepare::max_effect_groups> out{};
     if (!any()) return out;
-    std::size_t before = 0, after = 0;
-    float between = 0;
-    if (!hours_.empty() && std::isfinite(hour)) {
-        const auto next = std::upper_bound(hours_.begin(), hours_.end(), static_cast<double>(hour));
-        after = std::min<std::size_t>(static_cast<std::size_t>(next - hours_.begin()), hours_.size() - 1);
-        before = next == hours_.begin() ? 0 : static_cast<std::size_t>(next - hours_.begin()) - 1;
-        const double apart = hours_[after] - hours_[before];
-        between = apart > 0 ? static_cast<float>((static_cast<double>(hour) - hours_[before]) / apart) : 0.0F;
-    }
-    for (const std::size_t moment : {before, after})
-        if (!known_[moment]) go_on(moment, nodes_);
-    if (moments_.size() > 3) look_ahead(after);
+    const double now = std::isfinite(hour) ? static_cast<double>(hour) : 0.0;
+    const Between wanted = std::isfinite(hour) ? around(now) : Between{};
+    follow(now);
+    work(wanted);
+    const Between shown = known_around(wanted, now);
     for (std::size_t g = 0; g < groups_.size(); ++g)
-        out[g] = {losses_of(before, g), losses_of(after, g), between, effects::hides_by_depth(groups_[g].own),
+        out[g] = {losses_of(shown.before, g), losses_of(shown.after, g), shown.share, effects::hides_by_depth(groups_[g].own),
                   moments_.front().fog_density};
     return out;
 }

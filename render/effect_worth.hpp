@@ -28,8 +28,8 @@ std::vector<EffectGroup> groups_for_sale(std::span<const model::EffectMask> swit
 /// Differences by node, group and light. Each leaf is shaded at points of its full detail with and without the group: the mean
 /// squared difference of the colours counts. A cluster has the mean of its leaves, by their size. Losses of forms are measured
 /// in the model's own light. So in a darker one, where forms lose less, differences count by how much darker the model is.
-/// A light is worked out when at() first needs it, and the next hours' bit by bit before. What at() returns does not depend on
-/// that.
+/// A light is worked out bit by bit as at() needs it, and those of the next hours before. Each call but the first does a bounded
+/// part. Meanwhile the nearest known one counts. So what at() returns depends on the hours of the calls before.
 class EffectWorth {
 public:
     EffectWorth() = default;
@@ -38,25 +38,35 @@ public:
     EffectWorth(const model::Model& model, std::span<const EffectGroup> groups, std::span<const double> hours,
                 const std::array<float, 3>& sky);
 
-    /// What the groups lose at an hour; no number: the first light. The spans live as long as this. One thread at a time.
+    /// What the groups lose at an hour; no number: the first light. The first call works out whole lights, which takes a while.
+    /// The spans live as long as this. One thread at a time.
     /// Allocates nothing.
     [[nodiscard]] std::array<prepare::EffectLoss, prepare::max_effect_groups> at(float hour);
     [[nodiscard]] bool any() const { return !losses_.empty(); }
 
 private:
-    /// A light that is being worked out, node by node.
+    /// A light that is being worked out, node by node: first leaves, then sums upwards, group by group.
     struct Pass {
-        std::size_t moment = 0, node = 0;
+        std::size_t moment = 0, node = 0, summed = 0;
         double energy = 0;
+    };
+    /// Two lights, and the share of the second one.
+    struct Between {
+        std::size_t before = 0, after = 0;
+        float share = 0;
     };
 
     std::span<float> losses_of(std::size_t moment, std::size_t group) {
         return std::span(losses_).subspan((moment * groups_.size() + group) * nodes_, nodes_);
     }
-    void go_on(std::size_t moment, std::size_t max_nodes);
-    void finish();
-    void go_up(std::span<float> loss);
-    void look_ahead(std::size_t after);
+    [[nodiscard]] Between around(double hour) const;
+    [[nodiscard]] Between known_around(const Between& wanted, double hour) const;
+    void work(const Between& wanted);
+    std::size_t go_on(std::size_t moment, std::size_t max_steps);
+    void shade(std::size_t end);
+    void go_up(std::size_t end);
+    void follow(double hour);
+    void look_ahead(const Between& now);
 
     const model::Model* model_ = nullptr;
     std::vector<EffectGroup> groups_;
@@ -65,7 +75,9 @@ private:
     std::vector<model::Daylight> moments_;
     std::vector<bool> known_;  ///< moments that are worked out
     Pass pass_;
-    double own_energy_ = 0;
+    bool started_ = false;  ///< some light is known
+    int day_runs_ = 0;      ///< 1: on, -1: back, 0: not yet
+    double last_hour_ = 0, own_energy_ = 0;
     std::size_t nodes_ = 0;
     std::vector<vec3> mean_texels_;     ///< by texture
     std::vector<double> weight_, sum_;  ///< by node: of its leaves' sizes; of a pass upwards

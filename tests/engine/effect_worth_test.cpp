@@ -136,6 +136,66 @@ TEST(EffectWorth, IsTheSameHoweverTheDayGoesAndAllocatesNothing) {
     }
 }
 
+/// More leaves than a call works out, and every hour of the day.
+EffectWorth worth_of_many(const model::Model& m) {
+    std::vector<double> hours;
+    for (int hour = 0; hour <= 24; ++hour) hours.push_back(hour);
+    return {m, groups_of(std::vector<model::EffectMask>{effect_sun, effect_lamps}), hours, sky};
+}
+
+model::Model many_squares() {
+    SmallModel small;
+    const auto material = small.material(test::plain(0.5F, 0.4F, 0.2F, 1, effect_sun | effect_lamps));
+    for (int i = 0; i < 7000; ++i) small.square(material, test::at(3 * i, 0, -3));
+    model::Model m = small.finish();
+    m.lamp_light.assign(m.vertices.size(), {{255, 255, 128, 0}, {}});
+    m.light.max_lamp_light = 0.5F;
+    return m;
+}
+
+TEST(EffectWorth, ACallDoesABoundedPartAndTheNearestKnownLightCountsMeanwhile) {
+    const model::Model m = many_squares();
+    const EffectWorth fresh = worth_of_many(m);
+    EffectWorth day = fresh;
+    EXPECT_EQ(day.at(12)[0].before[5], loss_at(fresh, 0, 5, 12)) << "the first call works out all";
+    const float there = loss_at(fresh, 0, 5, 18.5F);
+    const auto shown = [&day] {
+        const prepare::EffectLoss loss = day.at(18.5F)[0];
+        return loss.before[5] + loss.between * (loss.after[5] - loss.before[5]);
+    };
+    const prepare::EffectLoss first = day.at(18.5F)[0];
+    EXPECT_EQ(first.before[5], loss_at(fresh, 0, 5, 13)) << "the nearest known one";
+    EXPECT_EQ(first.after[5], first.before[5]);
+    EXPECT_NE(first.before[5], there) << "the test would see it";
+    int calls = 2;
+    while (shown() != there && calls < 100) ++calls;
+    EXPECT_GE(calls, 6) << "two lights of 7000 leaves, 2048 a call";
+    EXPECT_LE(calls, 9);
+    for (std::size_t node : {0U, 5U, 6999U})
+        EXPECT_EQ(day.at(18)[0].before[node], loss_at(fresh, 0, node, 18)) << "as if it were done at once";
+}
+
+TEST(EffectWorth, ADayThatRunsFastShowsALightThatIsNearIt) {
+    const model::Model m = many_squares();
+    EffectWorth day = worth_of_many(m);
+    for (int i = 0; i <= 40; ++i) static_cast<void>(day.at(0.4F * static_cast<float>(i)));
+    const prepare::EffectLoss late = day.at(16.4F)[1];
+    EXPECT_LT(late.before[5] + late.between * (late.after[5] - late.before[5]), 0.01F) << "lamps are not those of midnight";
+    EXPECT_GT(day.at(0)[1].before[5], 0.01F);
+}
+
+TEST(EffectWorth, TheLightsThatComeNextAreWorkedOutFirst) {
+    const model::Model m = many_squares();
+    const EffectWorth fresh = worth_of_many(m);
+    for (const float way : {1.0F, -1.0F}) {
+        EffectWorth day = fresh;
+        for (int i = 0; i < 40; ++i) static_cast<void>(day.at(12.5F + way * (0.02F * static_cast<float>(i) - 0.4F)));
+        const float hour = 12.5F + way * 0.6F;
+        const prepare::EffectLoss loss = day.at(hour)[0];
+        EXPECT_EQ(loss.before[5] + loss.between * (loss.after[5] - loss.before[5]), loss_at(fresh, 0, 5, hour)) << way;
+    }
+}
+
 /// Of 31 triangles one alone is lit by lamps: what the leaf loses without them.
 float loss_of_lamp_on(std::size_t triangle) {
     SmallModel small;
