@@ -134,7 +134,7 @@ float size_of(const Box& box) {
     return box.empty() || !std::isfinite(outline) ? 0.0F : static_cast<float>(outline);
 }
 
-// Leaves shaded in a call, each about a microsecond: where a light is missing, and before it is needed.
+// Leaves shaded in a call, each one or two microseconds: where a light is missing, and before it is needed.
 constexpr std::size_t missing_nodes = 2048, nodes_ahead = 256;
 constexpr std::size_t sums_a_node = 32;  // take as long as a leaf
 constexpr std::size_t whole_light = ~std::size_t{0} / sums_a_node;
