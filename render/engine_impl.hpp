@@ -141,7 +141,7 @@ struct Engine::Impl {
     [[nodiscard]] double beside_us() const REQUIRES(draws) {
         return use_last ? 0.0 : cut.bought.cost_us - (filtered ? static_cast<double>(filter_us) : 0.0) - lever.spent_us;
     }
-    [[nodiscard]] ShadowScene shadow_scene() const REQUIRES(draws);
+    [[nodiscard]] ShadowScene shadow_scene() REQUIRES(draws);
     void offer_shadow(const prepare::PreparedFrame& set) REQUIRES(draws);
     void take_shadow() REQUIRES(draws);
     void begin_shadow(const Pose& pose, SubmitReport& report) REQUIRES(draws);

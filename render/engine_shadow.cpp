@@ -3,7 +3,7 @@
 
 namespace surefoot {
 
-ShadowScene Engine::Impl::shadow_scene() const { return {model, moving, light, time_s}; }
+ShadowScene Engine::Impl::shadow_scene() { return {model, moving, poses, light, time_s}; }
 
 /// Where it may be seen from until the next one is planned. None is offered while pictures are drawn without it.
 void Engine::Impl::offer_shadow(const prepare::PreparedFrame& set) {

@@ -41,7 +41,7 @@ Box with_shadow(const ShadowScene& scene, const Box& box) {
 
 }  // namespace
 
-MovingShadow::MovingShadow(const model::Model& model) {
+MovingShadow::MovingShadow(const model::Model& model, const ShadowLimits& limits) : limits_(limits) {
     if (model.motions.empty() || (model.called_for() & model::effect_moving_shadow) == 0) return;
     casts_.assign(model.reps.size(), false);
     for (std::size_t r = 0; r < model.reps.size(); ++r) {
@@ -55,25 +55,36 @@ MovingShadow::MovingShadow(const model::Model& model) {
         if (motion == model::none || !casts_[node.first_rep + node.rep_count - 1]) continue;
         if (node.parent == model::none || model::motion_of(model, model.nodes[node.parent]) != motion) roots_.push_back(n);
     }
-    near_.reserve(roots_.size());
-    planned_.reserve(max_casters);
-    drawn_.resize(max_casters);
-    items_.reserve(max_items);
+    near_.reserve(std::min(roots_.size(), limits_.poses) + limits_.poses / 2);
+    planned_.reserve(limits_.casters);
+    drawn_.resize(limits_.casters);
+    items_.reserve(limits_.items);
 }
 
-/// Largest on the picture first; ids break ties.
+/// Largest on the picture first; ids break ties. A pose is worked out only for what may be in reach at some time.
 void MovingShadow::find_near(const ShadowScene& scene, const ShadowEye& eye) {
-    near_.clear();
     const model::Frustum frustum =
         model::make_frustum(eye.pose, eye.viewport, model::far_corners_m(scene.model.nodes[0].box), eye.radius_m, eye.angle_rad);
-    for (const Index n : roots_) {
-        const Box box = scene.moving.box(n);
-        const double size_px = box.diagonal() * px_per_m(eye, box);
-        if (!(size_px >= min_size_px) || !model::visible(frustum, with_shadow(scene, box))) continue;
-        near_.push_back({n, size_px});
+    const auto size_px = [&](const Box& box) {
+        const double px = box.diagonal() * px_per_m(eye, box);
+        return px >= min_size_px && model::visible(frustum, with_shadow(scene, box)) ? px : 0.0;
+    };
+    near_.resize(roots_.size() <= limits_.poses ? 0 : std::min(near_.size(), limits_.poses / 2));
+    std::size_t poses = near_.size();
+    for (Near& one : near_) one.size_px = size_px(scene.moving.box(one.node, scene.poses));
+    const std::size_t boxes = std::min(roots_.size(), limits_.boxes);
+    for (std::size_t i = 0; i < boxes && poses < limits_.poses; ++i) {
+        const Index n = roots_[next_root_];
+        next_root_ = next_root_ + 1 < roots_.size() ? next_root_ + 1 : 0;
+        if (!(size_px(scene.model.nodes[n].box) > 0)) continue;
+        near_.push_back({n, size_px(scene.moving.box(n, scene.poses))});
+        ++poses;
     }
+    std::erase_if(near_, [](const Near& one) { return !(one.size_px > 0); });
     std::sort(near_.begin(), near_.end(),
               [](const Near& a, const Near& b) { return a.size_px != b.size_px ? a.size_px > b.size_px : a.node < b.node; });
+    const auto same = [](const Near& a, const Near& b) { return a.node == b.node; };
+    near_.erase(std::unique(near_.begin(), near_.end(), same), near_.end());
 }
 
 bool MovingShadow::plan(const ShadowScene& scene, const ShadowEye& eye) {
@@ -94,8 +105,9 @@ bool MovingShadow::fit(const ShadowScene& scene) {
     Box all;  // along x, y and z
     const auto half_of = [](const Box& box) { return std::max({box.half().x, box.half().y, 0.01}); };
     for (const Near& one : near_) {
-        const std::optional<model::MovingNode> moving = scene.moving.find(one.node);
-        if (!moving || planned_.size() == max_casters) continue;
+        if (planned_.size() == limits_.casters) break;
+        const std::optional<model::MovingNode> moving = scene.moving.find(one.node, scene.poses);
+        if (!moving) continue;
         Box with = all;
         for (unsigned c = 0; c < 8; ++c) {
             const dvec3 at = moving->pose(box_corner(moving->rest, c));
@@ -159,7 +171,7 @@ float MovingShadow::price_us(const model::Model& model, const model::CostModel& 
 
 /// By how far a thing's place in the drawn map is off on the picture; all of its size where it is not there.
 double MovingShadow::off_px(const ShadowScene& scene, const ShadowEye& eye, Index node) const {
-    const std::optional<model::MovingNode> moving = scene.moving.find(node);
+    const std::optional<model::MovingNode> moving = scene.moving.find(node, scene.poses);
     if (!moving) return 0;
     const Box box = moving->box();
     const double px = px_per_m(eye, box);
@@ -188,7 +200,7 @@ float MovingShadow::value(const ShadowScene& scene, const ShadowEye& eye) const 
     const bool shown = usable(scene, eye);
     double pixels = 0;
     for (const Cast& cast : planned_) {
-        const Box box = scene.moving.box(cast.node);
+        const Box box = scene.moving.box(cast.node, scene.poses);
         const double wide_px = box.diagonal() * px_per_m(eye, box);
         const double all_px = 0.5 * wide_px * wide_px;
         const double changed_px = shown ? std::min(all_px, 2 * wide_px * off_px(scene, eye, cast.node)) : all_px;

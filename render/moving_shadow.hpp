@@ -16,7 +16,8 @@ namespace surefoot {
 /// For whom a map is planned.
 struct ShadowScene {
     const model::Model& model;
-    const model::MovingNodes& moving;  ///< at the time of the picture
+    const model::MovingNodes& moving;
+    model::MotionPoses& poses;  ///< at the time of the picture
     const model::Daylight& light;
     double time_s = 0;
 };
@@ -28,22 +29,30 @@ struct ShadowEye {
     double radius_m = 0, angle_rad = 0;
 };
 
-/// What plans, judges and remembers the map of one engine. After it is made nothing allocates. Deterministic: it reads the scene
-/// at a time, the eye and the light, and no clock.
+/// How much a map holds, and how much a plan looks at.
+struct ShadowLimits {
+    std::size_t casters = 64, items = 4096;  ///< in a map
+    /// Worked out for a plan. Where more than these may cast, half of them are of the largest of the plan before.
+    std::size_t poses = 256;
+    std::size_t boxes = 1024;  ///< of things over all times, tested for a plan; the next plan goes on behind them
+};
+
+/// What plans, judges and remembers the map of one engine. After it is made nothing allocates. It reads the scene at a time, the
+/// eye, the light and its last plans, and no clock.
 class MovingShadow {
 public:
     /// An old map is shown while nothing in it is off by more, and it is no older. What did not move at all stays for ever.
     static constexpr double max_off_px = 2, max_age_s = 0.25;
     static constexpr double min_size_px = 4;     ///< of what casts, on the picture
     static constexpr double max_texel_m = 0.25;  ///< what would make texels larger is left out, except the largest on the picture
-    static constexpr std::size_t max_casters = 64, max_items = 4096;
 
     MovingShadow() = default;
     /// Finds what casts: nodes that move otherwise than their parents, and are not transparent. The model must outlive it.
-    explicit MovingShadow(const model::Model& model);
+    explicit MovingShadow(const model::Model& model, const ShadowLimits& limits = {});
     [[nodiscard]] bool any() const { return !roots_.empty(); }
 
-    /// Plans a map for this moment. False: no sun, or nothing that casts is near enough.
+    /// Plans a map for this moment. False: no sun, or nothing that casts is near enough. Takes as many poses as the limits allow,
+    /// a microsecond each, but for those that the picture has worked out already.
     bool plan(const ShadowScene& scene, const ShadowEye& eye);
     /// Of the planned map.
     [[nodiscard]] const gl::ShadowView& view() const { return view_; }
@@ -55,7 +64,7 @@ public:
     [[nodiscard]] float value(const ShadowScene& scene, const ShadowEye& eye) const;
     /// The planned map was drawn.
     void drawn(double time_s);
-    /// Whether the drawn map may be shown at this moment. Takes microseconds.
+    /// Whether the drawn map may be shown at this moment. Takes a pose for each thing in it, or finds that worked out.
     [[nodiscard]] bool usable(const ShadowScene& scene, const ShadowEye& eye) const;
     /// There is no drawn map any more.
     void forget() { drawn_count_ = 0; }
@@ -77,8 +86,10 @@ private:
     [[nodiscard]] double off_px(const ShadowScene& scene, const ShadowEye& eye, model::Index node) const;
     [[nodiscard]] bool recent(const ShadowScene& scene, double worst_px) const;
 
+    ShadowLimits limits_;
     std::vector<model::Index> roots_;
-    std::vector<bool> casts_;  ///< by form: some part of it is not transparent
+    std::size_t next_root_ = 0;  ///< that the next plan begins with
+    std::vector<bool> casts_;    ///< by form: some part of it is not transparent
     std::vector<Near> near_;
     std::vector<gl::DrawItem> items_;
     std::vector<Cast> planned_, drawn_;

@@ -62,15 +62,17 @@ const ShadowEye eye_of_lawn{over_the_lawn(), lawn_picture};
 struct PlannedLawn {
     const model::Model& m;
     model::MovingNodes moving{m};
+    model::MotionPoses poses{m};
     model::Daylight light = model::daylight_of_model(m.sun_direction, m.light);
-    MovingShadow shadow{m};
+    MovingShadow shadow;
 
-    explicit PlannedLawn(const model::Model& of = baked_lawn()) : m(of) {}
+    explicit PlannedLawn(const model::Model& of = baked_lawn(), const ShadowLimits& limits = {}) : m(of), shadow(m, limits) {}
     PlannedLawn(const PlannedLawn&) = delete;
     PlannedLawn& operator=(const PlannedLawn&) = delete;
     ShadowScene at(double time_s) {
         moving.set_span(time_s, time_s);
-        return {m, moving, light, time_s};
+        poses.set_time(time_s);
+        return {m, moving, poses, light, time_s};
     }
 };
 
@@ -202,6 +204,41 @@ TEST(MovingShadow, AllocatesNothingAfterItIsMade) {
         if (lawn.shadow.plan(scene, eye_of_lawn) && lawn.shadow.value(scene, eye_of_lawn) > 0) lawn.shadow.drawn(scene.time_s);
     }
     EXPECT_EQ(test::allocations(), before);
+}
+
+/// A lawn over which 70 small balls go up and down, in rows; those in front are larger on the picture.
+const model::Model& baked_rows() {
+    static const model::Model baked = [] {
+        importer::Scene scene = lawn_and_ball();
+        scene.nodes.pop_back();
+        const auto bead = bake::add_mesh(scene, bake::ball(6, 0.4F), "bead");
+        for (int i = 0; i < 70; ++i)
+            bake::place_moving(scene, bead, dvec3(2 * (i % 10) - 9, 1, 2 * (i / 10) - 6),
+                               bake::add_lift(scene, dvec3(0, 1 + 0.01 * i, 0), 10));
+        auto m = bake::bake(scene, {}, {});
+        EXPECT_TRUE(m.ok());
+        return std::move(*m);
+    }();
+    return baked;
+}
+
+std::vector<Index> nodes_in(const MovingShadow& shadow) {
+    std::vector<Index> nodes;
+    for (const gl::DrawItem& item : shadow.items()) nodes.push_back(item.node);
+    return nodes;
+}
+
+TEST(MovingShadow, OfManyThatMoveAPlanLooksAtSomeAndTheNextAtOthers) {
+    PlannedLawn all(baked_rows(), {.casters = 3}), some(baked_rows(), {.casters = 3, .poses = 8, .boxes = 16});
+    ASSERT_TRUE(all.shadow.plan(all.at(1), eye_of_lawn));
+    const std::vector<Index> largest = nodes_in(all.shadow);
+    ASSERT_EQ(largest.size(), 3U);
+    for (int plan = 0; plan < 18; ++plan) {  // 4 new ones each
+        ASSERT_TRUE(some.shadow.plan(some.at(1), eye_of_lawn));
+        if (plan > 0) continue;
+        EXPECT_NE(nodes_in(some.shadow), largest) << "it looked at more than the limit";
+    }
+    EXPECT_EQ(nodes_in(some.shadow), largest) << "some are never looked at";
 }
 
 /// Frames of one engine.
