@@ -216,11 +216,10 @@ void MovingShadow::drawn(double time_s) {
     drawn_s_ = time_s;
 }
 
-/// By what is planned now, what came near since included.
+/// By what is in the drawn map: what came near since lacks its shadow for a while, and hides no other.
 bool MovingShadow::usable(const ShadowScene& scene, const ShadowEye& eye) const {
     if (drawn_count_ == 0 || !shines(scene.light)) return false;
     double worst_px = 0;
-    for (const Cast& cast : planned_) worst_px = std::max(worst_px, off_px(scene, eye, cast.node));
     for (std::size_t i = 0; i < drawn_count_; ++i) worst_px = std::max(worst_px, off_px(scene, eye, drawn_[i].node));
     return recent(scene, worst_px);
 }

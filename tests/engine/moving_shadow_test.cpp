@@ -241,6 +241,23 @@ TEST(MovingShadow, OfManyThatMoveAPlanLooksAtSomeAndTheNextAtOthers) {
     EXPECT_EQ(nodes_in(some.shadow), largest) << "some are never looked at";
 }
 
+TEST(MovingShadow, ANewcomerIsOfferedAndHidesNoOther) {
+    importer::Scene scene = lawn_and_ball();
+    scene.nodes.back().motion = bake::add_lift(scene, dvec3(0, 1e-4, 0), 100);  // as good as still
+    bake::place_moving(scene, scene.nodes.back().mesh, dvec3(400, 2, 0), bake::add_lift(scene, dvec3(-400, 0, 0), 10));
+    const auto m = bake::bake(scene, {}, {});
+    ASSERT_TRUE(m.ok());
+    PlannedLawn lawn(*m);
+    ASSERT_TRUE(lawn.shadow.plan(lawn.at(0), eye_of_lawn));
+    EXPECT_EQ(lawn.shadow.items().size(), 1U) << "the other is far away";
+    lawn.shadow.drawn(0);
+    const ShadowScene later = lawn.at(4.5);
+    ASSERT_TRUE(lawn.shadow.plan(later, eye_of_lawn));
+    EXPECT_EQ(lawn.shadow.items().size(), 2U);
+    EXPECT_TRUE(lawn.shadow.usable(later, eye_of_lawn));
+    EXPECT_GT(lawn.shadow.value(later, eye_of_lawn), 50) << "the newcomer's pixels";
+}
+
 /// Frames of one engine.
 struct ShadowFrames {
     std::unique_ptr<Engine> engine;
