@@ -93,7 +93,9 @@ bool MovingShadow::plan(const ShadowScene& scene, const ShadowEye& eye) {
     if (!any() || !shines(scene.light)) return false;
     find_near(scene, eye);
     if (near_.empty() || !fit(scene)) return false;
-    for (const Cast& cast : planned_) choose_forms(scene, cast.node);
+    std::size_t held = 0;
+    while (held < planned_.size() && choose_forms(scene, planned_[held].node)) ++held;
+    planned_.resize(held);
     return !items_.empty();
 }
 
@@ -135,24 +137,27 @@ bool MovingShadow::fit(const ShadowScene& scene) {
     return true;
 }
 
-/// The coarsest form that is off by a texel at most; of children, where the node has none.
-void MovingShadow::choose_forms(const ShadowScene& scene, Index index) {
-    if (items_.size() == items_.capacity()) return;
+/// The coarsest form that is off by a texel at most; of children, where the node has none and all of them fit. False: the map is
+/// full.
+bool MovingShadow::choose_forms(const ShadowScene& scene, Index index) {
+    if (items_.size() == limits_.items) return false;
     const model::Model& m = scene.model;
     const model::Node& node = m.nodes[index];
     for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
         if (m.reps[r].error_m > view_.texel_m || !casts_[r]) continue;
         items_.push_back({index, r});
-        return;
+        return true;
     }
     const Index motion = model::motion_of(m, node);
-    const bool full = items_.size() + node.child_count > items_.capacity();
-    if (node.child_count == 0 || full) {
-        if (casts_[node.first_rep + node.rep_count - 1]) items_.push_back({index, node.first_rep + node.rep_count - 1});
-        return;
-    }
-    for (Index c = node.first_child; c < node.first_child + node.child_count; ++c)
-        if (model::motion_of(m, m.nodes[c]) == motion) choose_forms(scene, c);
+    const std::size_t first = items_.size();
+    bool all = node.child_count > 0 && first + node.child_count <= limits_.items;
+    for (Index c = node.first_child; all && c < node.first_child + node.child_count; ++c)
+        all = model::motion_of(m, m.nodes[c]) != motion || choose_forms(scene, c);
+    if (all) return true;
+    items_.resize(first);
+    const Index finest = node.first_rep + node.rep_count - 1;
+    if (casts_[finest]) items_.push_back({index, finest});
+    return true;
 }
 
 float MovingShadow::price_us(const model::Model& model, const model::CostModel& costs) const {

@@ -82,7 +82,7 @@ private:
     };
     void find_near(const ShadowScene& scene, const ShadowEye& eye);
     bool fit(const ShadowScene& scene);
-    void choose_forms(const ShadowScene& scene, model::Index node);
+    bool choose_forms(const ShadowScene& scene, model::Index node);
     [[nodiscard]] double off_px(const ShadowScene& scene, const ShadowEye& eye, model::Index node) const;
     [[nodiscard]] bool recent(const ShadowScene& scene, double worst_px) const;
 

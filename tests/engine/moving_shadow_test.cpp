@@ -241,6 +241,15 @@ TEST(MovingShadow, OfManyThatMoveAPlanLooksAtSomeAndTheNextAtOthers) {
     EXPECT_EQ(nodes_in(some.shadow), largest) << "some are never looked at";
 }
 
+TEST(MovingShadow, WhatDoesNotFitIntoTheMapIsNotInIt) {
+    PlannedLawn by_casters(baked_rows(), {.casters = 3}), by_items(baked_rows(), {.items = 3});
+    const ShadowScene scene = by_items.at(1);
+    ASSERT_TRUE(by_casters.shadow.plan(by_casters.at(1), eye_of_lawn));
+    ASSERT_TRUE(by_items.shadow.plan(scene, eye_of_lawn));
+    EXPECT_EQ(nodes_in(by_items.shadow), nodes_in(by_casters.shadow));
+    EXPECT_EQ(by_items.shadow.value(scene, eye_of_lawn), by_casters.shadow.value(scene, eye_of_lawn));
+}
+
 TEST(MovingShadow, ANewcomerIsOfferedAndHidesNoOther) {
     importer::Scene scene = lawn_and_ball();
     scene.nodes.back().motion = bake::add_lift(scene, dvec3(0, 1e-4, 0), 100);  // as good as still
