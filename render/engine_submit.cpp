@@ -35,10 +35,11 @@ bool Engine::Impl::in_view(model::Index node) {
     return model::visible(frustum, moving.any() ? moving.box(node, poses) : model.nodes[node].box);
 }
 
-/// Whether anything moves, now or later, that the pose may see.
+/// Whether anything moves, now or later, that the pose may see; and whether a shadow comes into its view now.
 bool Engine::Impl::motion_in_view(const Pose& pose) const {
     if (restless.empty() || !options.motion) return false;
-    if (shadow_shown) return true;  // it may be in view without what casts it
+    const bool shadow_comes = shadow_due && (drawn_without() & model::effect_moving_shadow) == 0;
+    if (shadow_shown || shadow_comes) return true;  // it may be in view without what casts it
     // A moved sample sees a pixel more.
     const double pixel_rad = model::pixel_angle(pose, options.device.viewport);
     const model::Frustum wide =

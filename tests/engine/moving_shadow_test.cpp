@@ -271,9 +271,12 @@ TEST(MovingShadow, ANewcomerIsOfferedAndHidesNoOther) {
 struct ShadowFrames {
     std::unique_ptr<Engine> engine;
     prepare::PreparedFrame prepared;
+    Pose pose = over_the_lawn();
+    std::int64_t at_ns = -1;  ///< of the next frame; below 0: none rests
 
-    explicit ShadowFrames(gl::BackendKind backend, model::Model model = baked_lawn()) {
+    explicit ShadowFrames(gl::BackendKind backend, model::Model model = baked_lawn(), double rest_after_ms = 0) {
         EngineOptions options;
+        options.rest_after_ms = rest_after_ms;
         options.device.kind = backend;
         options.device.viewport = lawn_picture;
         options.device.switches = {model::effect_moving_shadow};
@@ -290,12 +293,14 @@ struct ShadowFrames {
         engine->device().draws.plays();
         PrepareHints hints;
         hints.time_s = time_s;
-        engine->prepare({over_the_lawn(), 0.25, 0.06}, 0, 0, 0, prepared, hints);
+        engine->prepare({pose, 0.25, 0.06}, 0, 0, 0, prepared, hints);
         engine->set_time(time_s);
         engine->select(prepared, budget_us, {}, 0);
         SubmitLimits limits;
         limits.limit_us = 1e6;
-        return engine->submit(over_the_lawn(), limits);
+        limits.frame_ns = at_ns;
+        if (at_ns >= 0) at_ns += 33'000'000;
+        return engine->submit(pose, limits);
     }
     std::vector<std::uint8_t> pixels() {
         engine->device().draws.plays();
@@ -330,6 +335,34 @@ TEST(MovingShadow, StaysForAWhileWhereThereIsNoTimeAndIsThenLeftOut) {
     EXPECT_TRUE(soon.shadow_shown) << "a pixel off";
     EXPECT_FALSE(frames.frame(1.2, floor_us).shadow_shown);
     EXPECT_TRUE(frames.frame(1.2).shadow_shown);
+}
+
+/// A ball whose shadow falls on the middle of the lawn from `high_m` at time 0, by the sun of baked_lawn().
+dvec3 above_the_middle(double high_m) {
+    const dvec3 sun(baked_lawn().sun_direction);
+    return sun * (high_m / sun.y);
+}
+
+TEST(MovingShadow, EndsARestAsItComesIntoView) {
+    importer::Scene scene = lawn_and_ball();
+    scene.nodes.pop_back();
+    bake::place_moving(scene, scene.nodes.back().mesh, above_the_middle(40), bake::add_lift(scene, dvec3(600, 0, 0), 100));
+    auto m = bake::bake(scene, {}, {});
+    ASSERT_TRUE(m.ok());
+    ShadowFrames frames(gl::BackendKind::null, std::move(*m), 200);
+    ASSERT_NE(frames.engine, nullptr);
+    frames.pose.position = dvec3(0, 15, 0);
+    frames.pose.orientation = glm::quatLookAt(dvec3(0, -1, 0), dvec3(0, 0, -1));  // what casts is never in view
+    frames.at_ns = 0;
+    bool rested = false;
+    for (int i = 0; i < 20; ++i) rested = frames.frame(50 + 0.033 * i).at_rest;
+    EXPECT_TRUE(rested) << "600 m away";
+    const SubmitReport back = frames.frame(100);
+    EXPECT_FALSE(back.at_rest);
+    EXPECT_TRUE(back.shadow_refreshed && back.shadow_shown);
+    EXPECT_FALSE(frames.frame(100.033).at_rest);
+    for (int i = 0; i < 20; ++i) rested = frames.frame(150 + 0.033 * i).at_rest;
+    EXPECT_TRUE(rested) << "it went again";
 }
 
 TEST(MovingShadow, GoesWithItsSwitchAndTheSun) {
