@@ -12,7 +12,7 @@ using model::Index;
 
 constexpr float min_sun = 0.02F;        // of the sun's light and of its height: below, nothing has a shadow that shows
 constexpr double min_distance_m = 1;    // distances of pixels are no less
-constexpr double max_followed_m = 100;  // of a shadow, from what casts it
+constexpr double min_height = 0.196;    // of the sun, for the length of shadows: five times the height, as the bake has it
 constexpr float pass_ns_per_texel = 2;  // of an empty map, as on llvmpipe with two cores: nothing calibrates it
 constexpr double rim_texels = 4;        // empty ones round the map: what is beyond them is in the sun
 
@@ -24,19 +24,49 @@ bool shines(const model::Daylight& light) {
     return std::max({light.sun_light.r, light.sun_light.g, light.sun_light.b}) > min_sun && light.sun_direction.y > min_sun;
 }
 
-double px_per_m(const ShadowEye& eye, const Box& box) {
-    return 1 / (std::max(min_distance_m, box.distance(eye.pose.position)) * model::pixel_angle(eye.pose, eye.viewport));
+double sun_height(const ShadowScene& scene) { return std::max(static_cast<double>(scene.light.sun_direction.y), min_height); }
+
+/// From what casts to the bottom of the world, along the light.
+double followed_m(const ShadowScene& scene, const Box& box) {
+    return std::max(0.0, box.max.y - scene.model.nodes[0].box.min.y) / sun_height(scene);
 }
 
-/// The box and its shadow down to the bottom of the world, as far as it is followed.
 Box with_shadow(const ShadowScene& scene, const Box& box) {
-    const dvec3 towards(scene.light.sun_direction);
-    const double down_m = std::max(0.0, box.max.y - scene.model.nodes[0].box.min.y);
-    const dvec3 way = -towards * std::min(max_followed_m, down_m / std::max(towards.y, static_cast<double>(min_sun)));
+    const dvec3 way = -dvec3(scene.light.sun_direction) * followed_m(scene, box);
     Box both = box;
     both.grow(box.min + way);
     both.grow(box.max + way);
     return both;
+}
+
+/// From the eye to the nearest of a box and all places that its shadow may fall on. The square of it is convex along the light.
+double shadow_distance_m(const ShadowScene& scene, const dvec3& eye, const Box& box) {
+    const dvec3 towards(scene.light.sun_direction);
+    double from_m = 0, to_m = followed_m(scene, box);
+    for (int i = 0; i < 16; ++i) {
+        const double middle_m = 0.5 * (from_m + to_m);
+        const dvec3 at = eye + towards * middle_m;
+        (glm::dot(at - glm::clamp(at, box.min, box.max), towards) > 0 ? to_m : from_m) = middle_m;
+    }
+    return std::min(box.distance(eye + towards * from_m), box.distance(eye + towards * to_m));
+}
+
+double px_per_m(const ShadowEye& eye, double distance_m) {
+    return 1 / (std::max(min_distance_m, distance_m) * model::pixel_angle(eye.pose, eye.viewport));
+}
+
+/// Of a box and its shadow, where that is nearest to the eye.
+double px_per_m(const ShadowScene& scene, const ShadowEye& eye, const Box& box) {
+    return px_per_m(eye, shadow_distance_m(scene, eye.pose.position, box));
+}
+
+/// How far a shadow goes with what casts it: on level ground or on what faces the sun, whichever is more. What the light only
+/// grazes has longer ways, and hardly any light.
+double shadow_way_m(const ShadowScene& scene, const dvec3& way) {
+    const dvec3 towards(scene.light.sun_direction);
+    const double down = way.y / sun_height(scene);
+    return std::max(glm::length(dvec2(way.x - towards.x * down, way.z - towards.z * down)),
+                    glm::length(way - towards * glm::dot(way, towards)));
 }
 
 }  // namespace
@@ -65,9 +95,13 @@ MovingShadow::MovingShadow(const model::Model& model, const ShadowLimits& limits
 void MovingShadow::find_near(const ShadowScene& scene, const ShadowEye& eye) {
     const model::Frustum frustum =
         model::make_frustum(eye.pose, eye.viewport, model::far_corners_m(scene.model.nodes[0].box), eye.radius_m, eye.angle_rad);
+    const auto may_reach = [&](const Box& box) {
+        const Box with = with_shadow(scene, box);
+        return box.diagonal() * px_per_m(eye, with.distance(eye.pose.position)) >= min_size_px && model::visible(frustum, with);
+    };
     const auto size_px = [&](const Box& box) {
-        const double px = box.diagonal() * px_per_m(eye, box);
-        return px >= min_size_px && model::visible(frustum, with_shadow(scene, box)) ? px : 0.0;
+        const double px = may_reach(box) ? box.diagonal() * px_per_m(scene, eye, box) : 0.0;
+        return px >= min_size_px ? px : 0.0;
     };
     near_.resize(roots_.size() <= limits_.poses ? 0 : std::min(near_.size(), limits_.poses / 2));
     std::size_t poses = near_.size();
@@ -76,7 +110,7 @@ void MovingShadow::find_near(const ShadowScene& scene, const ShadowEye& eye) {
     for (std::size_t i = 0; i < boxes && poses < limits_.poses; ++i) {
         const Index n = roots_[next_root_];
         next_root_ = next_root_ + 1 < roots_.size() ? next_root_ + 1 : 0;
-        if (!(size_px(scene.model.nodes[n].box) > 0)) continue;
+        if (!may_reach(scene.model.nodes[n].box)) continue;
         near_.push_back({n, size_px(scene.moving.box(n, scene.poses))});
         ++poses;
     }
@@ -91,6 +125,7 @@ bool MovingShadow::plan(const ShadowScene& scene, const ShadowEye& eye) {
     items_.clear();
     planned_.clear();
     if (!any() || !shines(scene.light)) return false;
+    planned_towards_ = scene.light.sun_direction;
     find_near(scene, eye);
     if (near_.empty() || !fit(scene)) return false;
     std::size_t held = 0;
@@ -174,23 +209,24 @@ float MovingShadow::price_us(const model::Model& model, const model::CostModel& 
     return costs.combine.frame_us(sum.submit_us, sum.raster_us) - costs.combine.fixed_us;
 }
 
-/// By how far a thing's place in the drawn map is off on the picture; all of its size where it is not there.
+/// By how far a thing's shadow in the drawn map is off on the picture, where it is nearest to the eye; all of its size where it
+/// is not there.
 double MovingShadow::off_px(const ShadowScene& scene, const ShadowEye& eye, Index node) const {
     const std::optional<model::MovingNode> moving = scene.moving.find(node, scene.poses);
     if (!moving) return 0;
     const Box box = moving->box();
-    const double px = px_per_m(eye, box);
+    const double px = px_per_m(scene, eye, box);
     const auto end = drawn_.begin() + static_cast<std::ptrdiff_t>(drawn_count_);
     const auto found = std::find_if(drawn_.begin(), end, [&](const Cast& cast) { return cast.node == node; });
     if (found == end) return box.diagonal() * px;
     double way_m = 0;
     for (unsigned c = 0; c < 8; ++c) {
         const dvec3 at = box_corner(moving->rest, c);
-        way_m = std::max(way_m, glm::length(moving->pose(at) - found->pose(at)));
+        way_m = std::max(way_m, shadow_way_m(scene, moving->pose(at) - found->pose(at)));
     }
     // The shadow turns with the sun about what casts it.
     const double turned = static_cast<double>(glm::length(scene.light.sun_direction - drawn_towards_));
-    return (way_m + turned * box.diagonal()) * px;
+    return (way_m + turned * followed_m(scene, box) / sun_height(scene)) * px;
 }
 
 bool MovingShadow::recent(const ShadowScene& scene, double worst_px) const {
@@ -206,7 +242,7 @@ float MovingShadow::value(const ShadowScene& scene, const ShadowEye& eye) const 
     double pixels = 0;
     for (const Cast& cast : planned_) {
         const Box box = scene.moving.box(cast.node, scene.poses);
-        const double wide_px = box.diagonal() * px_per_m(eye, box);
+        const double wide_px = box.diagonal() * px_per_m(scene, eye, box);
         const double all_px = 0.5 * wide_px * wide_px;
         const double changed_px = shown ? std::min(all_px, 2 * wide_px * off_px(scene, eye, cast.node)) : all_px;
         pixels += changed_px * static_cast<double>(scene.model.nodes[cast.node].importance);
@@ -217,7 +253,7 @@ float MovingShadow::value(const ShadowScene& scene, const ShadowEye& eye) const 
 void MovingShadow::drawn(double time_s) {
     std::copy(planned_.begin(), planned_.end(), drawn_.begin());
     drawn_count_ = planned_.size();
-    drawn_towards_ = view_.towards;
+    drawn_towards_ = planned_towards_;
     drawn_s_ = time_s;
 }
 

@@ -43,7 +43,7 @@ class MovingShadow {
 public:
     /// An old map is shown while nothing in it is off by more, and it is no older. What did not move at all stays for ever.
     static constexpr double max_off_px = 2, max_age_s = 0.25;
-    static constexpr double min_size_px = 4;     ///< of what casts, on the picture
+    static constexpr double min_size_px = 4;     ///< of what casts, at its own distance or at that of its shadow
     static constexpr double max_texel_m = 0.25;  ///< what would make texels larger is left out, except the largest on the picture
 
     MovingShadow() = default;
@@ -95,7 +95,7 @@ private:
     std::vector<Cast> planned_, drawn_;
     std::size_t drawn_count_ = 0;
     gl::ShadowView view_;
-    vec3 drawn_towards_{0, 1, 0};
+    vec3 planned_towards_{0, 1, 0}, drawn_towards_{0, 1, 0};  ///< the sun
     double drawn_s_ = 0;
 };
 

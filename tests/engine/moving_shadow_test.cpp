@@ -343,6 +343,46 @@ dvec3 above_the_middle(double high_m) {
     return sun * (high_m / sun.y);
 }
 
+TEST(MovingShadow, IsJudgedWhereItFallsAndNotAtWhatCastsIt) {
+    importer::Scene scene = lawn_and_ball();
+    const importer::Index ball = scene.nodes.back().mesh;
+    scene.nodes.pop_back();
+    bake::place_moving(scene, ball, above_the_middle(60), bake::add_lift(scene, dvec3(20, 0, 0), 10));  // 5 m/s
+    const auto m = bake::bake(scene, {}, {});
+    ASSERT_TRUE(m.ok());
+    PlannedLawn high(*m);
+    ShadowEye near = eye_of_lawn, far = eye_of_lawn;
+    near.pose.position = dvec3(0, 4, 0);
+    near.pose.orientation = glm::quatLookAt(dvec3(0, -1, 0), dvec3(0, 0, -1));
+    far.pose.position = dvec3(0, 60, 0);
+    far.pose.orientation = near.pose.orientation;
+    for (const bool is_near : {true, false}) {
+        const ShadowEye& eye = is_near ? near : far;
+        ASSERT_TRUE(high.shadow.plan(high.at(0), eye));
+        high.shadow.drawn(0);
+        EXPECT_TRUE(high.shadow.usable(high.at(0.001), eye));
+        EXPECT_EQ(high.shadow.usable(high.at(0.02), eye), !is_near) << "10 cm at 4 m, or at 60 m";
+    }
+}
+
+TEST(MovingShadow, OfWhatSinksGoesFartherWhereTheSunIsLow) {
+    importer::Scene scene = lawn_and_ball();
+    scene.nodes.back().motion = bake::add_lift(scene, dvec3(0, 20, 0), 10);  // 5 m/s
+    const auto m = bake::bake(scene, {}, {});
+    ASSERT_TRUE(m.ok());
+    PlannedLawn lift(*m);
+    for (const bool low : {false, true}) {
+        lift.light.sun_direction = glm::normalize(low ? vec3(0.8F, 0.2F, 0.6F) : vec3(0, 1, 0));
+        ASSERT_TRUE(lift.shadow.plan(lift.at(1), eye_of_lawn));
+        lift.shadow.drawn(1);
+        EXPECT_EQ(lift.shadow.usable(lift.at(1.015), eye_of_lawn), !low) << "8 cm up, 37 cm on the ground";
+        lift.shadow.drawn(1);
+        ShadowScene turned = lift.at(1);
+        lift.light.sun_direction = glm::normalize(lift.light.sun_direction + vec3(0.01F, 0, 0));
+        EXPECT_EQ(lift.shadow.usable(turned, eye_of_lawn), !low) << "the sun turns by half a degree";
+    }
+}
+
 TEST(MovingShadow, EndsARestAsItComesIntoView) {
     importer::Scene scene = lawn_and_ball();
     scene.nodes.pop_back();
