@@ -25,6 +25,13 @@ void Engine::Impl::take_shadow() {
         if (list[i].name() == select::ItemName{select::ItemKind::refresh, shadow_item}) cut.bought.cancel(i, list[i]);
 }
 
+/// The price of the map that this frame bought.
+float Engine::Impl::shadow_map_us() const {
+    for (const select::Item& item : offered.offered())
+        if (item.kind == select::ItemKind::refresh && item.what == shadow_item) return item.cost_us;
+    return 0;
+}
+
 /// Before a picture begins: the bought map is drawn with it. An old one is shown while it is good enough.
 void Engine::Impl::begin_shadow(const Pose& pose, SubmitReport& report) {
     if (!shadow.any()) return;

@@ -98,7 +98,8 @@ void GlDevice::refresh_shadow(const ShadowView& view, std::span<const DrawItem> 
     casters_ = casters;
 }
 
-/// Items are drawn as for a picture whose eye is the map's origin.
+/// Items are drawn as for a picture whose eye is the map's origin. They are a slice, so the first one of the picture waits for
+/// them.
 void GlDevice::draw_shadow_map() {
     const std::span<const DrawItem> casters = casters_;
     casters_ = {};
@@ -118,6 +119,7 @@ void GlDevice::draw_shadow_map() {
     view_projection_ = of_eye;
     for (const std::uint32_t program : caster_programs_) resources_.programs[program].frame = 0;
     state_known_ = false;
+    end_slice();
 }
 
 /// Where the map stands for the eye of this picture. The sum is made in double: both may be far from 0.

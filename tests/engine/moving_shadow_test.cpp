@@ -273,6 +273,7 @@ struct ShadowFrames {
     prepare::PreparedFrame prepared;
     Pose pose = over_the_lawn();
     std::int64_t at_ns = -1;  ///< of the next frame; below 0: none rests
+    SubmitLimits limits{.limit_us = 1e6};
 
     explicit ShadowFrames(gl::BackendKind backend, model::Model model = baked_lawn(), double rest_after_ms = 0) {
         EngineOptions options;
@@ -296,8 +297,6 @@ struct ShadowFrames {
         engine->prepare({pose, 0.25, 0.06}, 0, 0, 0, prepared, hints);
         engine->set_time(time_s);
         engine->select(prepared, budget_us, {}, 0);
-        SubmitLimits limits;
-        limits.limit_us = 1e6;
         limits.frame_ns = at_ns;
         if (at_ns >= 0) at_ns += 33'000'000;
         return engine->submit(pose, limits);
@@ -323,6 +322,20 @@ TEST(MovingShadow, IsBoughtWhenItChangesPaidForAndCounted) {
     EXPECT_TRUE(same.shadow_shown);
     EXPECT_EQ(same.bought_items, 0U);
     EXPECT_TRUE(frames.frame(1.1).shadow_refreshed);
+}
+
+/// The device draws while the time of the clock stands still: only what is in flight counts.
+TEST(MovingShadow, IsInFlightUntilTheFirstSliceIsDrawn) {
+    ShadowFrames frames(gl::BackendKind::null);
+    ASSERT_NE(frames.engine, nullptr);
+    frames.limits.limit_us = frames.frame(1).bought_us;
+    frames.limits.now_ns = [](void*) -> std::int64_t { return 0; };
+    const SubmitReport kept = frames.frame(1);
+    EXPECT_FALSE(kept.shadow_refreshed);
+    EXPECT_EQ(kept.downgraded_slices, 0U);
+    const SubmitReport anew = frames.frame(2);
+    EXPECT_TRUE(anew.shadow_refreshed);
+    EXPECT_GT(anew.downgraded_slices, 0U) << "the map alone takes all of the time";
 }
 
 TEST(MovingShadow, StaysForAWhileWhereThereIsNoTimeAndIsThenLeftOut) {
