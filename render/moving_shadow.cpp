@@ -73,18 +73,22 @@ double shadow_way_m(const ShadowScene& scene, const dvec3& way) {
 
 MovingShadow::MovingShadow(const model::Model& model, const ShadowLimits& limits) : limits_(limits) {
     if (model.motions.empty() || (model.called_for() & model::effect_moving_shadow) == 0) return;
-    casts_.assign(model.reps.size(), false);
-    for (std::size_t r = 0; r < model.reps.size(); ++r) {
-        const model::Representation& rep = model.reps[r];
-        for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p)
-            if ((model.materials[model.parts[p].material].effects & model::effect_blend) == 0) casts_[r] = true;
-    }
-    for (Index n = 0; n < model.nodes.size(); ++n) {
+    casts_.reserve(model.reps.size());
+    for (const model::Representation& rep : model.reps) casts_.push_back(model::casting_of(model, rep) == model::Casting::casts);
+    std::vector<bool> leaf_casts(model.nodes.size(), false);            // its own one, or one below that moves as it does
+    for (Index n = static_cast<Index>(model.nodes.size()); n-- > 0;) {  // parents come before their children
         const model::Node& node = model.nodes[n];
         const Index motion = model::motion_of(model, node);
-        if (motion == model::none || !casts_[node.first_rep + node.rep_count - 1]) continue;
-        if (node.parent == model::none || model::motion_of(model, model.nodes[node.parent]) != motion) roots_.push_back(n);
+        if (motion == model::none) continue;
+        if (node.child_count == 0) leaf_casts[n] = casts_[node.first_rep + node.rep_count - 1];
+        if (!leaf_casts[n]) continue;
+        const bool follows = node.parent != model::none && model::motion_of(model, model.nodes[node.parent]) == motion;
+        if (follows)
+            leaf_casts[node.parent] = true;
+        else
+            roots_.push_back(n);
     }
+    std::reverse(roots_.begin(), roots_.end());
     near_.reserve(std::min(roots_.size(), limits_.poses) + limits_.poses / 2);
     planned_.reserve(limits_.casters);
     drawn_.resize(limits_.casters);

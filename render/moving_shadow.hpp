@@ -47,7 +47,8 @@ public:
     static constexpr double max_texel_m = 0.25;  ///< what would make texels larger is left out, except the largest on the picture
 
     MovingShadow() = default;
-    /// Finds what casts: nodes that move otherwise than their parents, and are not transparent. The model must outlive it.
+    /// Finds what casts: nodes that move otherwise than their parents, with a leaf that is not transparent and may see the sky.
+    /// The model must outlive it.
     explicit MovingShadow(const model::Model& model, const ShadowLimits& limits = {});
     [[nodiscard]] bool any() const { return !roots_.empty(); }
 
@@ -89,7 +90,7 @@ private:
     ShadowLimits limits_;
     std::vector<model::Index> roots_;
     std::size_t next_root_ = 0;  ///< that the next plan begins with
-    std::vector<bool> casts_;    ///< by form: some part of it is not transparent
+    std::vector<bool> casts_;    ///< by form
     std::vector<Near> near_;
     std::vector<gl::DrawItem> items_;
     std::vector<Cast> planned_, drawn_;

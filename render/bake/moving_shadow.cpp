@@ -19,43 +19,34 @@ using model::Index;
 /// A shadow is followed to so many times the height of what casts it, where the sun stands 11 degrees high.
 constexpr double max_shadow_lengths = 5;
 
-bool casts_shadow(const model::Model& m, const model::Node& node) {
-    const model::Representation& finest = m.reps[node.first_rep + node.rep_count - 1];
-    for (Index p = finest.first_part; p < finest.first_part + finest.part_count; ++p)
-        if (m.materials[m.parts[p].material].alpha != model::AlphaMode::blend) return true;
-    return false;
-}
-
-/// Boxes in which shadows of what moves may fall. They reach down to the bottom of the world.
+/// Where things are that cast shadows, over all times, and how far their shadows fall.
 struct ShadowReach {
-    std::vector<Box> boxes;
-    std::size_t moving = 0, casting = 0;  ///< leaves
+    std::vector<Box> boxes;                                ///< by motion, but for those that cast nothing
+    std::size_t moving = 0, casting = 0, transparent = 0;  ///< leaves
 
     explicit ShadowReach(const model::Model& m) {
         if (m.motions.empty()) return;
-        const double bottom_m = m.nodes[0].box.min.y;
         std::vector<Box> of_motion(m.motions.size());
         for (const model::Node& node : m.nodes) {
             const Index motion = model::motion_of(m, node);
             if (node.child_count > 0 || motion == model::none) continue;
             ++moving;
-            if (!casts_shadow(m, node)) continue;
+            const model::Casting how = model::casting_of(m, m.reps[node.first_rep + node.rep_count - 1]);
+            if (how == model::Casting::transparent) ++transparent;
+            if (how != model::Casting::casts) continue;
             ++casting;
             of_motion[motion].grow(model::rest_box_of(m, node));
         }
-        for (Index motion = 0; motion < of_motion.size(); ++motion) {
-            if (of_motion[motion].empty()) continue;
-            Box reach = model::reach_of(m, motion, of_motion[motion]).box;
-            const double way_m = max_shadow_lengths * std::max(0.0, reach.max.y - bottom_m);
-            reach.min -= dvec3(way_m, 0, way_m);
-            reach.max += dvec3(way_m, 0, way_m);
-            reach.min.y = std::min(reach.min.y, bottom_m);
-            boxes.push_back(reach);
-        }
+        for (Index motion = 0; motion < of_motion.size(); ++motion)
+            if (!of_motion[motion].empty()) boxes.push_back(model::reach_of(m, motion, of_motion[motion]).box);
     }
+    /// Shadows are as long as what casts is higher than the bottom of the box, times a limit.
     [[nodiscard]] bool meets(const Box& box) const {
-        return std::any_of(boxes.begin(), boxes.end(), [&](const Box& reach) {
-            return glm::all(glm::lessThanEqual(reach.min, box.max)) && glm::all(glm::lessThanEqual(box.min, reach.max));
+        return std::any_of(boxes.begin(), boxes.end(), [&](const Box& casts) {
+            const double way_m = max_shadow_lengths * (casts.max.y - box.min.y);
+            const dvec3 way(way_m, 0, way_m);
+            return way_m >= 0 && glm::all(glm::lessThanEqual(casts.min - way, dvec3(box.max.x, casts.min.y, box.max.z))) &&
+                   glm::all(glm::lessThanEqual(dvec3(box.min.x, casts.min.y, box.min.z), casts.max + way));
         });
     }
 };
@@ -111,7 +102,8 @@ bool is_lit_form(const model::Representation& rep) { return (rep.effects & model
 
 std::string why_no_shadow(const model::Model& m, const ShadowReach& reach) {
     if (m.motions.empty() || reach.moving == 0) return "nothing moves";
-    if (reach.casting == 0) return "all that moves is transparent";
+    if (reach.transparent == reach.moving) return "all that moves is transparent";
+    if (reach.casting == 0) return "all that moves is transparent or sees no sky";
     return "nothing lit stands within reach of the shadows of what moves";
 }
 

@@ -135,6 +135,18 @@ MotionReach reach_of(const Model& model, std::uint32_t motion, const Box& at_res
     return reach;
 }
 
+/// What was measured and has no sun sees no sky. What is unlit was not measured.
+Casting casting_of(const Model& model, const Representation& rep) {
+    Casting found = Casting::transparent;
+    for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+        const Material& material = model.materials[model.parts[p].material];
+        if (material.alpha == AlphaMode::blend) continue;
+        if ((material.effects & (effect_sun | effect_openness)) != effect_openness) return Casting::casts;
+        found = Casting::sees_no_sky;
+    }
+    return found;
+}
+
 EffectFinding motion_finding(const Model& model) {
     EffectFinding finding;
     if (model.motions.empty()) {

@@ -13,6 +13,7 @@ namespace surefoot::model {
 struct Model;
 struct Node;
 struct Placement;
+struct Representation;
 
 /// Where a rigid thing is, relative to its rest: x -> pivot + translation + rotation * (x - pivot), in world coordinates.
 struct RigidPose {
@@ -62,6 +63,11 @@ MotionReach reach_of(const Model& model, std::uint32_t motion, const Box& at_res
 
 /// Whether a model calls for motion, and why, as for an effect. It has no program and no bit: what moves is drawn as what stands.
 EffectFinding motion_finding(const Model& model);
+
+/// What a form that moves has to be to cast a shadow. That it sees no sky is known only where the bake measured it.
+enum class Casting : std::uint8_t { casts, transparent, sees_no_sky };
+/// Its parts that are not transparent decide.
+Casting casting_of(const Model& model, const Representation& rep);
 
 /// The box of a node's full detail at rest: Node::box, unless it moves. Passes over its triangles.
 Box rest_box_of(const Model& model, const Node& node);

@@ -12,6 +12,7 @@
 #include "render/model/walk_file.hpp"
 #include "render/moving_shadow.hpp"
 #include "rt/base/file.hpp"
+#include "tests/bake/house_scene.hpp"
 #include "tests/bake/moving_scene.hpp"
 #include "tests/select/count_malloc.hpp"
 #include "tests/temporary_folder.hpp"
@@ -113,6 +114,45 @@ TEST(MovingShadowBake, IsNotWhereNothingMovesOrIsLitOrIsOpaqueAndSaysSo) {
             EXPECT_EQ(read->effects.back().reason, why);
         }
     }
+}
+
+TEST(MovingShadowBake, IsNotForWhatMovesInAClosedRoom) {
+    importer::Scene scene;
+    importer::Primitive room;
+    lit::add_faces(room, vec3(-3, 0, -3), vec3(3, 4, 3), false);
+    lit::add_faces(room, vec3(-2.5F, 0.5F, -2.5F), vec3(2.5F, 3.5F, 2.5F), true);
+    lit::put(scene, room, "room", dvec3(0));
+    lit::put(scene, lit::floor_of(10, 6), "ground", dvec3(0, -0.01, 0));
+    const importer::Index lift = bake::add_mesh(scene, bake::ball(4, 0.3F), "lift");
+    bake::place_moving(scene, lift, dvec3(0, 1, 0), bake::add_lift(scene, dvec3(0, 1, 0), 10));
+    for (const bool open : {false, true}) {
+        if (open) bake::place_moving(scene, lift, dvec3(6, 1, 0), bake::add_lift(scene, dvec3(0, 1, 0), 11));
+        bake::BakeOptions full;
+        full.quality = bake::Quality::full;
+        auto m = bake::bake(scene, full, {});
+        ASSERT_TRUE(m.ok());
+        EXPECT_EQ(m->effects.back().called_for, open);
+        EXPECT_EQ(m->effects.back().reason,
+                  open ? "1 of 2 things that move are opaque and within reach of what is lit and stands still"
+                       : "all that moves is transparent or sees no sky");
+        if (!open) continue;
+        PlannedLawn both(*m);
+        ASSERT_TRUE(both.shadow.plan(both.at(0), eye_of_lawn));
+        EXPECT_EQ(both.shadow.items().size(), 1U) << "that in the room casts as well";
+    }
+}
+
+/// A pit far from the lawn makes no shadow longer.
+TEST(MovingShadowBake, ReachesAsFarAsWhatReceivesIsBelow) {
+    importer::Scene scene = lawn_and_ball();
+    const auto flag =
+        bake::add_mesh(scene, bake::grid_surface(2, 2, [](float u, float v) { return vec3(2 * v, 0, 2 * u); }), "flag");
+    bake::place(scene, flag, dvec3(60, 0, 0));     // 10 + 5 * 4 m is less
+    bake::place(scene, flag, dvec3(0, -30, 300));  // the pit
+    const auto m = bake::bake(scene, {}, {});
+    ASSERT_TRUE(m.ok());
+    EXPECT_TRUE(m->effects.back().called_for);
+    EXPECT_EQ(m->effects.back().triangles, 800U) << "the lawn";
 }
 
 TEST(MovingShadowBake, AFileWithoutItIsAsBeforeThereWasAny) {
