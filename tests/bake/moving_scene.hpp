@@ -32,13 +32,15 @@ inline importer::Index add_turn(importer::Scene& scene, const dvec3& pivot, cons
 }
 
 /// To a place and back.
-inline importer::Index add_lift(importer::Scene& scene, const dvec3& way, double period_s) {
+inline importer::Index add_lift(importer::Scene& scene, const dvec3& way, double period_s,
+                                importer::Index outer = importer::none) {
     const std::array<float, 4> straight{0, 0, 0, 1};
     return add_scene_motion(scene, dvec3(0),
                             {{0, dvec3(0), straight},
                              {0.4 * period_s, way, straight},
                              {0.6 * period_s, way, straight},
-                             {period_s, dvec3(0), straight}});
+                             {period_s, dvec3(0), straight}},
+                            outer);
 }
 
 inline void place_moving(importer::Scene& scene, importer::Index mesh, const dvec3& at, importer::Index motion,

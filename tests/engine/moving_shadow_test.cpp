@@ -238,12 +238,16 @@ TEST(MovingShadow, IsNotPlannedByNightOrFarFromTheEyeOrBehindIt) {
 
 TEST(MovingShadow, AllocatesNothingAfterItIsMade) {
     PlannedLawn lawn;
+    int drawn = 0;
     const std::uint64_t before = test::allocations();
     for (int i = 0; i < 20; ++i) {
         const ShadowScene scene = lawn.at(0.1 * i);
-        if (lawn.shadow.plan(scene, eye_of_lawn) && lawn.shadow.value(scene, eye_of_lawn) > 0) lawn.shadow.drawn(scene.time_s);
+        if (!lawn.shadow.plan(scene, eye_of_lawn) || !(lawn.shadow.value(scene, eye_of_lawn) > 0)) continue;
+        lawn.shadow.drawn(scene.time_s);
+        ++drawn;
     }
     EXPECT_EQ(test::allocations(), before);
+    EXPECT_EQ(drawn, 20);
 }
 
 /// A lawn over which 70 small balls go up and down, in rows; those in front are larger on the picture.
@@ -281,6 +285,42 @@ TEST(MovingShadow, OfManyThatMoveAPlanLooksAtSomeAndTheNextAtOthers) {
     EXPECT_EQ(nodes_in(some.shadow), largest) << "some are never looked at";
 }
 
+TEST(MovingShadow, Holds64OfMoreAndAllocatesNothingForThem) {
+    PlannedLawn rows(baked_rows()), some(baked_rows(), {.poses = 32, .boxes = 40});
+    int drawn = 0;
+    const std::uint64_t before = test::allocations();
+    for (PlannedLawn* lawn : {&rows, &some}) {
+        for (int i = 0; i < 10; ++i) {
+            const ShadowScene scene = lawn->at(0.3 * i);
+            if (!lawn->shadow.plan(scene, eye_of_lawn) || !(lawn->shadow.value(scene, eye_of_lawn) > 0)) continue;
+            lawn->shadow.drawn(scene.time_s);
+            ++drawn;
+        }
+    }
+    EXPECT_EQ(test::allocations(), before);
+    EXPECT_EQ(drawn, 20);
+    EXPECT_EQ(nodes_in(rows.shadow).size(), 64U) << "of 70";
+    EXPECT_LE(nodes_in(some.shadow).size(), 32U);
+}
+
+/// A ball 300 m away would make texels too wide. One on an arm goes where both of its motions take it.
+TEST(MovingShadow, LeavesOutWhatWidensTexelsAndFollowsOuterMotions) {
+    importer::Scene scene = lawn_and_ball();
+    const importer::Index ball = scene.nodes.back().mesh;
+    const auto arm = bake::add_turn(scene, dvec3(0, 3, 0), dvec3(0, 1, 0), 20);
+    scene.nodes.back().motion = bake::add_lift(scene, dvec3(0, 2, 0), 10, arm);
+    bake::place_moving(scene, ball, dvec3(0, 3, -300), bake::add_lift(scene, dvec3(0, 2, 0), 12), dvec3(4));
+    const auto m = bake::bake(scene, {}, {});
+    ASSERT_TRUE(m.ok());
+    PlannedLawn lawn(*m);
+    ASSERT_TRUE(lawn.shadow.plan(lawn.at(5), eye_of_lawn));
+    ASSERT_EQ(nodes_in(lawn.shadow).size(), 1U);
+    const Box box = lawn.moving.box(nodes_in(lawn.shadow)[0], lawn.poses);
+    EXPECT_LT(glm::length(box.centre() - dvec3(0, 5, -5)), 0.1) << "a quarter of a turn, and 2 m up";
+    EXPECT_LT(glm::length(lawn.shadow.view().origin - box.centre()), 1);
+    EXPECT_LE(lawn.shadow.view().texel_m, MovingShadow::max_texel_m);
+}
+
 TEST(MovingShadow, WhatDoesNotFitIntoTheMapIsNotInIt) {
     PlannedLawn by_casters(baked_rows(), {.casters = 3}), by_items(baked_rows(), {.items = 3});
     const ShadowScene scene = by_items.at(1);
@@ -315,8 +355,10 @@ struct ShadowFrames {
     std::int64_t at_ns = -1;  ///< of the next frame; below 0: none rests
     SubmitLimits limits{.limit_us = 1e6};
 
-    explicit ShadowFrames(gl::BackendKind backend, model::Model model = baked_lawn(), double rest_after_ms = 0) {
+    explicit ShadowFrames(gl::BackendKind backend, model::Model model = baked_lawn(), double rest_after_ms = 0,
+                          std::uint32_t samples = 1) {
         EngineOptions options;
+        options.device.samples = samples;
         options.rest_after_ms = rest_after_ms;
         options.device.kind = backend;
         options.device.viewport = lawn_picture;
@@ -469,6 +511,19 @@ TEST(MovingShadow, GoesWithItsSwitchAndTheSun) {
     frames.engine->set_light(model::daylight_at(0, frames.engine->model().light));
     const SubmitReport night = frames.frame(1);
     EXPECT_FALSE(night.shadow_refreshed || night.shadow_shown);
+}
+
+TEST(MovingShadow, IsInPicturesOfSeveralSamples) {
+    ShadowFrames frames(gl::BackendKind::egl, baked_lawn(), 0, 4);
+    if (frames.engine == nullptr) GTEST_SKIP() << "EGL is not there, or a sanitizer allows no GL";
+    EXPECT_TRUE(frames.frame(1).shadow_shown);
+    const std::vector<std::uint8_t> with = frames.pixels();
+    frames.engine->draw_unbudgeted(over_the_lawn(), frames.engine->full_detail(over_the_lawn()));
+    const std::vector<std::uint8_t> without = frames.pixels();
+    ASSERT_EQ(with.size(), without.size());
+    std::size_t darker = 0;
+    for (std::size_t i = 0; i < with.size(); ++i) darker += with[i] + 8 < without[i] ? 1 : 0;
+    EXPECT_GT(darker, 150U);
 }
 
 TEST(MovingShadow, IsInThePictureOfFramesAndInNoOther) {
