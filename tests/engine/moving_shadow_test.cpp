@@ -1,174 +1,25 @@
-// The shadow map of what moves: who calls for it, what it holds, when it is bought, and when an old one is left out.
+// The shadow map of what moves: what it holds, when it is bought, and when an old one is left out.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <string>
 #include <vector>
 
-#include "render/bake/bake.hpp"
 #include "render/engine.hpp"
-#include "render/model/walk_file.hpp"
-#include "render/moving_shadow.hpp"
-#include "rt/base/file.hpp"
-#include "tests/bake/house_scene.hpp"
-#include "tests/bake/moving_scene.hpp"
+#include "tests/engine/moving_lawn.hpp"
 #include "tests/select/count_malloc.hpp"
-#include "tests/temporary_folder.hpp"
 
 namespace surefoot {
 namespace {
 
 using model::Index;
-
-/// A lawn, a ball that circles over it once in 8 s, and a ball that stands far away.
-importer::Scene lawn_and_ball(bool unlit = false) {
-    importer::Scene scene;
-    scene.sources = {"by hand"};
-    scene.materials.resize(2);
-    scene.materials[1].colour = {0.8F, 0.2F, 0.1F, 1};
-    for (importer::Material& material : scene.materials) material.unlit = unlit;
-    const auto lawn = bake::add_mesh(
-        scene, bake::grid_surface(20, 20, [](float u, float v) { return vec3(40 * v - 20, 0, 40 * u - 20); }), "lawn");
-    importer::Primitive red = bake::ball(12, 1);
-    red.material = 1;
-    const auto ball = bake::add_mesh(scene, red, "ball");
-    bake::place(scene, lawn, dvec3(0));
-    bake::place(scene, ball, dvec3(500, 1, 0));
-    bake::place_moving(scene, ball, dvec3(5, 3, 0), bake::add_turn(scene, dvec3(0, 3, 0), dvec3(0, 1, 0), 8));
-    return scene;
-}
-
-const model::Model& baked_lawn() {
-    static const model::Model baked = [] {
-        auto m = bake::bake(lawn_and_ball(), {}, {});
-        EXPECT_TRUE(m.ok());
-        return std::move(*m);
-    }();
-    return baked;
-}
-
-Pose over_the_lawn() {
-    Pose pose;
-    pose.position = dvec3(0, 12, 20);
-    pose.orientation = glm::quatLookAt(glm::normalize(dvec3(0, 0, 0) - pose.position), dvec3(0, 1, 0));
-    return pose;
-}
-
-constexpr model::Viewport lawn_picture{320, 180};
-const ShadowEye eye_of_lawn{over_the_lawn(), lawn_picture};
-
-/// A planner, and the scene at a time.
-struct PlannedLawn {
-    const model::Model& m;
-    model::MovingNodes moving{m};
-    model::MotionPoses poses{m};
-    model::Daylight light = model::daylight_of_model(m.sun_direction, m.light);
-    MovingShadow shadow;
-
-    explicit PlannedLawn(const model::Model& of = baked_lawn(), const ShadowLimits& limits = {}) : m(of), shadow(m, limits) {}
-    PlannedLawn(const PlannedLawn&) = delete;
-    PlannedLawn& operator=(const PlannedLawn&) = delete;
-    ShadowScene at(double time_s) {
-        moving.set_span(time_s, time_s);
-        poses.set_time(time_s);
-        return {m, moving, poses, light, time_s};
-    }
-};
-
-TEST(MovingShadowBake, IsCalledForByWhatStandsLitWithinReach) {
-    const model::Model& m = baked_lawn();
-    const model::EffectFinding& finding = m.effects.back();
-    EXPECT_TRUE(finding.called_for);
-    EXPECT_EQ(finding.triangles, 800U) << "the lawn";
-    EXPECT_EQ(finding.reason, "1 of 1 things that move are opaque and within reach of what is lit and stands still");
-    for (const model::Node& node : m.nodes) {
-        if (node.child_count > 0) continue;
-        const bool lawn = std::string(m.name_of(node)) == "lawn";
-        for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r)
-            EXPECT_EQ((m.reps[r].effects & model::effect_moving_shadow) != 0, lawn) << m.name_of(node);
-    }
-}
-
-TEST(MovingShadowBake, IsNotWhereNothingMovesOrIsLitOrIsOpaqueAndSaysSo) {
-    importer::Scene still = lawn_and_ball(), glass = lawn_and_ball();
-    for (importer::Node& node : still.nodes) node.motion = importer::none;
-    glass.materials[1].alpha = model::AlphaMode::blend;
-    const std::vector<std::pair<importer::Scene, std::string>> scenes{
-        {still, "nothing moves"},
-        {glass, "all that moves is transparent"},
-        {lawn_and_ball(true), "nothing lit stands within reach of the shadows of what moves"}};
-    for (const auto& [scene, why] : scenes) {
-        auto m = bake::bake(scene, {}, {});
-        ASSERT_TRUE(m.ok());
-        EXPECT_FALSE(m->effects.back().called_for);
-        EXPECT_EQ(m->effects.back().reason, why);
-        EXPECT_EQ(m->called_for() & model::effect_moving_shadow, 0U);
-        const test::TemporaryFolder folder;
-        ASSERT_TRUE(model::write_walk(folder / "it.walk", *m).ok());
-        const auto read = model::read_walk(folder / "it.walk");
-        ASSERT_TRUE(read.ok());
-        EXPECT_EQ(read->effects.back().looked_for, !m->motions.empty());
-        if (!m->motions.empty()) {
-            EXPECT_EQ(read->effects.back().reason, why);
-        }
-    }
-}
-
-TEST(MovingShadowBake, IsNotForWhatMovesInAClosedRoom) {
-    importer::Scene scene;
-    importer::Primitive room;
-    lit::add_faces(room, vec3(-3, 0, -3), vec3(3, 4, 3), false);
-    lit::add_faces(room, vec3(-2.5F, 0.5F, -2.5F), vec3(2.5F, 3.5F, 2.5F), true);
-    lit::put(scene, room, "room", dvec3(0));
-    lit::put(scene, lit::floor_of(10, 6), "ground", dvec3(0, -0.01, 0));
-    const importer::Index lift = bake::add_mesh(scene, bake::ball(4, 0.3F), "lift");
-    bake::place_moving(scene, lift, dvec3(0, 1, 0), bake::add_lift(scene, dvec3(0, 1, 0), 10));
-    for (const bool open : {false, true}) {
-        if (open) bake::place_moving(scene, lift, dvec3(6, 1, 0), bake::add_lift(scene, dvec3(0, 1, 0), 11));
-        bake::BakeOptions full;
-        full.quality = bake::Quality::full;
-        auto m = bake::bake(scene, full, {});
-        ASSERT_TRUE(m.ok());
-        EXPECT_EQ(m->effects.back().called_for, open);
-        EXPECT_EQ(m->effects.back().reason,
-                  open ? "1 of 2 things that move are opaque and within reach of what is lit and stands still"
-                       : "all that moves is transparent or sees no sky");
-        if (!open) continue;
-        PlannedLawn both(*m);
-        ASSERT_TRUE(both.shadow.plan(both.at(0), eye_of_lawn));
-        EXPECT_EQ(both.shadow.items().size(), 1U) << "that in the room casts as well";
-    }
-}
-
-/// A pit far from the lawn makes no shadow longer.
-TEST(MovingShadowBake, ReachesAsFarAsWhatReceivesIsBelow) {
-    importer::Scene scene = lawn_and_ball();
-    const auto flag =
-        bake::add_mesh(scene, bake::grid_surface(2, 2, [](float u, float v) { return vec3(2 * v, 0, 2 * u); }), "flag");
-    bake::place(scene, flag, dvec3(60, 0, 0));     // 10 + 5 * 4 m is less
-    bake::place(scene, flag, dvec3(0, -30, 300));  // the pit
-    const auto m = bake::bake(scene, {}, {});
-    ASSERT_TRUE(m.ok());
-    EXPECT_TRUE(m->effects.back().called_for);
-    EXPECT_EQ(m->effects.back().triangles, 800U) << "the lawn";
-}
-
-TEST(MovingShadowBake, AFileWithoutItIsAsBeforeThereWasAny) {
-    const test::TemporaryFolder folder;
-    importer::Scene still = lawn_and_ball();
-    for (importer::Node& node : still.nodes) node.motion = importer::none;
-    auto m = bake::bake(still, {}, {});
-    ASSERT_TRUE(m.ok());
-    ASSERT_TRUE(model::write_walk(folder / "now.walk", *m).ok());
-    auto read = model::read_walk(folder / "now.walk");
-    ASSERT_TRUE(read.ok());
-    EXPECT_EQ(read->effects.size(), static_cast<std::size_t>(model::effect_count));
-    m->effects.pop_back();
-    ASSERT_TRUE(model::write_walk(folder / "before.walk", *m).ok());
-    EXPECT_EQ(*read_file(folder / "now.walk"), *read_file(folder / "before.walk"));
-}
+using test::baked_lawn;
+using test::eye_of_lawn;
+using test::lawn_and_ball;
+using test::lawn_picture;
+using test::over_the_lawn;
+using test::PlannedLawn;
 
 TEST(MovingShadow, HoldsAllThatCastsWithARimOfSun) {
     PlannedLawn lawn;
