@@ -48,6 +48,14 @@ TEST(MovingShadowBake, IsNotWhereNothingMovesOrIsLitOrIsOpaqueAndSaysSo) {
         EXPECT_FALSE(m->effects.back().called_for);
         EXPECT_EQ(m->effects.back().reason, why);
         EXPECT_EQ(m->called_for() & model::effect_moving_shadow, 0U);
+        const test::TemporaryFolder folder;
+        ASSERT_TRUE(model::write_walk(folder / "it.walk", *m).ok());
+        const auto read = model::read_walk(folder / "it.walk");
+        ASSERT_TRUE(read.ok());
+        EXPECT_EQ(read->effects.back().looked_for, !m->motions.empty());
+        if (!m->motions.empty()) {
+            EXPECT_EQ(read->effects.back().reason, why);
+        }
     }
 }
 
