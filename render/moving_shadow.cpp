@@ -127,6 +127,7 @@ void MovingShadow::find_near(const ShadowScene& scene, const ShadowEye& eye) {
 
 bool MovingShadow::plan(const ShadowScene& scene, const ShadowEye& eye) {
     items_.clear();
+    visits_ = 0;
     planned_.clear();
     if (!any() || !shines(scene.light)) return false;
     planned_towards_ = scene.light.sun_direction;
@@ -189,7 +190,8 @@ bool MovingShadow::choose_forms(const ShadowScene& scene, Index index) {
     }
     const Index motion = model::motion_of(m, node);
     const std::size_t first = items_.size();
-    bool all = node.child_count > 0 && first + node.child_count <= limits_.items;
+    // Forms that were taken back were visited for nothing, so visits are bounded too.
+    bool all = node.child_count > 0 && first + node.child_count <= limits_.items && ++visits_ < limits_.items;
     for (Index c = node.first_child; all && c < node.first_child + node.child_count; ++c)
         all = model::motion_of(m, m.nodes[c]) != motion || choose_forms(scene, c);
     if (all) return true;
@@ -243,11 +245,12 @@ float MovingShadow::value(const ShadowScene& scene, const ShadowEye& eye) const 
     const vec3 sun = albedo * scene.light.sun_light * scene.light.sun_direction.y;
     const float share = std::min(1.0F, glm::dot(sun, sun) / 3.0F / of_missing);
     const bool shown = usable(scene, eye);
+    const double picture_px = 1.0 * eye.viewport.width * eye.viewport.height;
     double pixels = 0;
     for (const Cast& cast : planned_) {
         const Box box = scene.moving.box(cast.node, scene.poses);
         const double wide_px = box.diagonal() * px_per_m(scene, eye, box);
-        const double all_px = 0.5 * wide_px * wide_px;
+        const double all_px = std::min(0.5 * wide_px * wide_px, picture_px);
         const double changed_px = shown ? std::min(all_px, 2 * wide_px * off_px(scene, eye, cast.node)) : all_px;
         pixels += changed_px * static_cast<double>(scene.model.nodes[cast.node].importance);
     }

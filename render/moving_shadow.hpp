@@ -95,6 +95,7 @@ private:
     std::vector<gl::DrawItem> items_;
     std::vector<Cast> planned_, drawn_;
     std::size_t drawn_count_ = 0;
+    std::size_t visits_ = 0;  ///< nodes that the plan descended from
     gl::ShadowView view_;
     vec3 planned_towards_{0, 1, 0}, drawn_towards_{0, 1, 0};  ///< the sun
     double drawn_s_ = 0;

@@ -87,6 +87,18 @@ TEST(MovingShadow, IsNotPlannedByNightOrFarFromTheEyeOrBehindIt) {
     EXPECT_FALSE(lawn.shadow.plan(lawn.at(1), away));
 }
 
+TEST(MovingShadow, IsWorthThePictureAtMost) {
+    PlannedLawn lawn;
+    const ShadowScene scene = lawn.at(1);
+    ASSERT_TRUE(lawn.shadow.plan(scene, eye_of_lawn));
+    const Index ball = lawn.shadow.items()[0].node;
+    ShadowEye below = eye_of_lawn;
+    below.pose.position = lawn.moving.box(ball, lawn.poses).centre() - 2.5 * lawn.m.sun_direction;
+    ASSERT_TRUE(lawn.shadow.plan(scene, below));
+    EXPECT_LE(lawn.shadow.value(scene, below), static_cast<float>(lawn_picture.width * lawn_picture.height)) << "in the shadow";
+    EXPECT_GT(lawn.shadow.value(scene, below), lawn.shadow.value(scene, eye_of_lawn));
+}
+
 TEST(MovingShadow, AllocatesNothingAfterItIsMade) {
     PlannedLawn lawn;
     int drawn = 0;

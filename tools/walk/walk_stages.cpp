@@ -201,6 +201,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
             now_.dt_s = period_s;
         }
         now_.hints.time_s = walk_time_s();  // it is known when the frame is due
+        show(light_at(newest));             // and so is its light
         prepare_inline();
     }
     now_.before = unseen ? newest.before : now_.pose;

@@ -206,6 +206,7 @@ const dvec3& Walker::newest_free_place() const { return free_places_[(free_first
 
 void Walker::remember_free_place() {
     if (steep_ || support_ != no_thing) return;  // one only slides on from there, or it is elsewhere later
+    if (going_back_) return;                     // it is stuck here
     const dvec3& last = free_count_ > 0 ? newest_free_place() : stood_up_at_;
     if (glm::length(feet_ - last) < free_every_m || glm::length(feet_ - stood_up_at_) < free_every_m) return;
     if (free_count_ == max_free_places)
