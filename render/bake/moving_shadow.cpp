@@ -131,7 +131,7 @@ void add_moving_shadow(model::Model& m) {
         finding.reason = fmt::format("{} of {} things that move are opaque and within reach of what is lit and stands still",
                                      reach.casting, reach.moving);
     for (model::EffectFinding& f : m.effects)
-        if (f.bit == finding.bit) f = std::move(finding);
+        if (f.bit == finding.bit) f = finding;
 }
 
 }  // namespace surefoot::bake

@@ -28,6 +28,7 @@ constexpr std::string_view light_code = "    v_colour.rgb *= lit;\n";
 std::span<const EffectModule> all_effects() {
     static const std::vector<EffectModule> modules = [] {
         std::vector<EffectModule> all;
+        all.reserve(registry.size());
         for (const EffectModule* const module : registry) all.push_back(*module);
         return all;
     }();

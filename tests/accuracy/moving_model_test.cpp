@@ -56,7 +56,7 @@ struct CirclingBall {
 
     /// The whole picture at full detail.
     [[nodiscard]] std::vector<std::uint8_t> picture(double time_s) const {
-        PlacesRequest places = request;
+        PlacesRequest places = static_cast<const PlacesRequest&>(request);
         places.time_s = time_s;
         auto opened = open_engine_of_places(places, std::move(*model::read_walk(request.model_file)), 0, {});
         EXPECT_TRUE(opened.ok());
@@ -100,7 +100,7 @@ TEST(AccuracyOfMoving, AnAmpleBudgetShowsWhatFullDetailShows) {
 TEST(AccuracyOfMoving, EffectsAreCountedAsOfTheTime) {
     EffectReport early, late;
     for (const double time_s : {out_of_view_s, in_view_s}) {
-        PlacesRequest request = circling_ball().request;
+        PlacesRequest request = static_cast<const PlacesRequest&>(circling_ball().request);
         request.time_s = time_s;
         auto report = measure_effects(request, {});
         ASSERT_TRUE(report.ok()) << report.error().text();

@@ -18,12 +18,13 @@ namespace {
 
 /// `count` upright squares of 2 * half_m in a row, 1 m apart.
 Level add_squares(Geometry& g, int count, float half_m, float error_m) {
+    const int middle = count / 2;
     Level level{{{0, {}}}, static_cast<std::uint32_t>(2 * count), error_m};
     for (int i = 0; i < count; ++i) {
         const auto base = static_cast<std::uint32_t>(g.vertices.size());
         for (const vec2 c : {vec2(-1, -1), vec2(1, -1), vec2(1, 1), vec2(-1, 1)}) {
             model::Vertex v{};
-            v.position[0] = static_cast<float>(i - count / 2) + half_m * c.x;
+            v.position[0] = static_cast<float>(i - middle) + half_m * c.x;
             v.position[1] = half_m * c.y;
             v.position[2] = i % 2 == 0 ? -1.0F : 1.0F;
             v.normal[2] = 127;

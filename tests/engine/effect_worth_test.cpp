@@ -203,7 +203,8 @@ float loss_of_lamp_on(std::size_t triangle) {
     std::vector<std::uint32_t> indices;
     for (std::uint32_t i = 0; i < 31 * 3; ++i) {
         model::Vertex v{};
-        v.position[0] = static_cast<float>(i / 3) + (i % 3 == 1 ? 1.0F : 0.0F);
+        const std::uint32_t row = i / 3;
+        v.position[0] = static_cast<float>(row) + (i % 3 == 1 ? 1.0F : 0.0F);
         v.position[1] = i % 3 == 2 ? 1.0F : 0.0F;
         v.normal[2] = 127;
         vertices.push_back(v);

@@ -56,7 +56,8 @@ struct YardFrames {
     prepare::PreparedFrame prepared;
     Pose pose;
 
-    YardFrames(bool shaded, std::vector<model::EffectMask> switches, bool buys, model::CostModel costs = model::default_costs()) {
+    YardFrames(bool shaded, std::vector<model::EffectMask> switches, bool buys,
+               const model::CostModel& costs = model::default_costs()) {
         pose.position = dvec3(0, 12, 20);
         pose.orientation = glm::quatLookAt(glm::normalize(-pose.position), dvec3(0, 1, 0));
         EngineOptions options;

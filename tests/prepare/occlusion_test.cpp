@@ -231,7 +231,8 @@ TEST(Occlusion, TheWorkOfAllBoxesIsBounded) {
     std::size_t hidden_by_many = 0, hidden_by_few = 0, hidden_by_usual = 0;
     std::uint32_t many_left = many, few_left = few, none_left = 0;
     for (int k = 0; k < 600; ++k) {
-        const Box box{{2.05 + 0.05 * (k % 20), -1, -10.0 - 2 * (k / 20)}, {9, 1, -6}};
+        const int row = k / 20;
+        const Box box{{2.05 + 0.05 * (k % 20), -1, -10.0 - 2 * row}, {9, 1, -6}};
         hidden_by_many += occlusion.hides(box, many_left) ? 1 : 0;
         hidden_by_few += occlusion.hides(box, few_left) ? 1 : 0;
         hidden_by_usual += occlusion.hides(box, none_left) ? 1 : 0;
