@@ -24,16 +24,8 @@ struct CirclingBall {
     Pose pose;
 
     CirclingBall() {
-        importer::Scene scene;
-        scene.sources = {"by hand"};
-        scene.materials.resize(2);
-        scene.materials[1].colour = {0.8F, 0.2F, 0.1F, 1};
-        const auto lawn = bake::add_mesh(
-            scene, bake::grid_surface(20, 20, [](float u, float v) { return vec3(40 * v - 20, 0, 40 * u - 20); }), "lawn");
-        importer::Primitive red = bake::ball(12, 1);
-        red.material = 1;
-        const auto ball = bake::add_mesh(scene, red, "ball");
-        bake::place(scene, lawn, dvec3(0));
+        importer::Index ball = importer::none;
+        importer::Scene scene = bake::lawn_with_ball_mesh(ball);
         bake::place_moving(scene, ball, dvec3(5, 2, 0), bake::add_turn(scene, dvec3(0, 2, 0), dvec3(0, 1, 0), 8));
         auto baked = bake::bake(scene, {}, {});
         EXPECT_TRUE(baked.ok());

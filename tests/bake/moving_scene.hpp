@@ -62,4 +62,20 @@ inline importer::Scene moving_town() {
     return scene;
 }
 
+/// A scene of a lawn of 40 m, and the mesh of a red ball for it. unlit: both materials are.
+inline importer::Scene lawn_with_ball_mesh(importer::Index& ball_mesh, bool unlit = false) {
+    importer::Scene scene;
+    scene.sources = {"by hand"};
+    scene.materials.resize(2);
+    scene.materials[1].colour = {0.8F, 0.2F, 0.1F, 1};
+    for (importer::Material& material : scene.materials) material.unlit = unlit;
+    const auto lawn =
+        add_mesh(scene, grid_surface(20, 20, [](float u, float v) { return vec3(40 * v - 20, 0, 40 * u - 20); }), "lawn");
+    importer::Primitive red = ball(12, 1);
+    red.material = 1;
+    ball_mesh = add_mesh(scene, red, "ball");
+    place(scene, lawn, dvec3(0));
+    return scene;
+}
+
 }  // namespace surefoot::bake

@@ -13,6 +13,7 @@
 #include "render/measure/image_metrics.hpp"
 #include "render/model/moving.hpp"
 #include "tests/bake/moving_scene.hpp"
+#include "tests/engine/moving_frame.hpp"
 #include "tests/select/count_malloc.hpp"
 
 namespace surefoot {
@@ -106,15 +107,10 @@ struct Frames {
     }
     SubmitReport frame(const Pose& pose, double time_s) {
         at_ns += moving_frame_ns;
-        PrepareHints hints;
-        hints.time_s = time_s;
-        engine->prepare({pose, 0.25, 0.06}, 0, 0, 0, prepared, hints);
-        engine->set_time(time_s);
-        engine->select(prepared, budget_us, {}, 0);
         SubmitLimits limits;
         limits.limit_us = 1e6;
         limits.frame_ns = at_ns;
-        return engine->submit(pose, limits);
+        return test::moving_frame(*engine, prepared, pose, time_s, budget_us, limits);
     }
     [[nodiscard]] bool draws(Index node) const {
         const auto items = engine->drawn();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/engine.hpp"
+#include "tests/engine/moving_frame.hpp"
 #include "tests/engine/moving_lawn.hpp"
 #include "tests/select/count_malloc.hpp"
 
@@ -236,15 +237,9 @@ struct ShadowFrames {
         engine->reserve(prepared);
     }
     SubmitReport frame(double time_s, double budget_us = 1e6) {
-        engine->device().draws.plays();
-        PrepareHints hints;
-        hints.time_s = time_s;
-        engine->prepare({pose, 0.25, 0.06}, 0, 0, 0, prepared, hints);
-        engine->set_time(time_s);
-        engine->select(prepared, budget_us, {}, 0);
         limits.frame_ns = at_ns;
         if (at_ns >= 0) at_ns += 33'000'000;
-        return engine->submit(pose, limits);
+        return test::moving_frame(*engine, prepared, pose, time_s, budget_us, limits);
     }
     std::vector<std::uint8_t> pixels() {
         engine->device().draws.plays();

@@ -10,6 +10,7 @@
 #include "render/bake/bake.hpp"
 #include "render/engine.hpp"
 #include "tests/bake/moving_scene.hpp"
+#include "tests/engine/moving_frame.hpp"
 
 namespace surefoot {
 namespace {
@@ -19,17 +20,9 @@ constexpr model::EffectMask group_sun = model::effect_sun, group_shadow = model:
 
 /// A ball circles over a lawn.
 model::Model baked_yard() {
-    importer::Scene scene;
-    scene.sources = {"by hand"};
-    scene.materials.resize(2);
-    scene.materials[1].colour = {0.8F, 0.2F, 0.1F, 1};
-    const auto lawn = bake::add_mesh(
-        scene, bake::grid_surface(20, 20, [](float u, float v) { return vec3(40 * v - 20, 0, 40 * u - 20); }), "lawn");
-    importer::Primitive red = bake::ball(12, 1);
-    red.material = 1;
-    bake::place(scene, lawn, dvec3(0));
-    bake::place_moving(scene, bake::add_mesh(scene, red, "ball"), dvec3(5, 3, 0),
-                       bake::add_turn(scene, dvec3(0, 3, 0), dvec3(0, 1, 0), 8));
+    importer::Index ball = importer::none;
+    importer::Scene scene = bake::lawn_with_ball_mesh(ball);
+    bake::place_moving(scene, ball, dvec3(5, 3, 0), bake::add_turn(scene, dvec3(0, 3, 0), dvec3(0, 1, 0), 8));
     auto m = bake::bake(scene, {}, {});
     EXPECT_TRUE(m.ok());
     return std::move(*m);
@@ -72,15 +65,9 @@ struct YardFrames {
         engine->reserve(prepared);
     }
     SubmitReport frame(double time_s, double budget_us = 1e6) {
-        engine->device().draws.plays();
-        PrepareHints hints;
-        hints.time_s = time_s;
-        engine->prepare({pose, 0.25, 0.06}, 0, 0, 0, prepared, hints);
-        engine->set_time(time_s);
-        engine->select(prepared, budget_us, {}, 0);
         SubmitLimits limits;
         limits.limit_us = 1e6;
-        return engine->submit(pose, limits);
+        return test::moving_frame(*engine, prepared, pose, time_s, budget_us, limits);
     }
     [[nodiscard]] bool offers_a_refresh() const {
         const std::span<const select::Item> list = engine->offered().offered();
