@@ -201,8 +201,8 @@ TEST(Boxes, OfVeryLongThingsAreLeftOut) {
         << "twice the samples are more than a picture holds: no box without its long sides";
 }
 
-TEST(Boxes, ThatAreBestAtNoSizeAreTakenOutAgain) {
-    // Two leaves below a root, each with a coarse mesh of two triangles and full detail.
+/// Two leaves below a root, each with a coarse mesh of two triangles and full detail.
+model::Model two_leaves() {
     model::Model m = squares({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {5, 0, 1}, {5, 0, 1}});
     m.nodes.resize(3);
     m.nodes[0].first_rep = 0, m.nodes[0].rep_count = 1, m.nodes[0].first_child = 1, m.nodes[0].child_count = 2;
@@ -214,6 +214,11 @@ TEST(Boxes, ThatAreBestAtNoSizeAreTakenOutAgain) {
         m.reps[2 * leaf].triangles = 5000;
     }
     for (model::Representation& rep : m.reps) rep.area_m2 = {1, 1, 1};
+    return m;
+}
+
+TEST(Boxes, ThatAreBestAtNoSizeAreTakenOutAgain) {
+    model::Model m = two_leaves();
     std::vector<BoxForm> boxes = capture_boxes(m, {{false, true, true}, true, 28}, one_by_one, go_on);
     ASSERT_EQ(boxes.size(), 3U);
     const std::size_t texels = m.texels.size(), textures = m.textures.size();
@@ -239,6 +244,29 @@ TEST(Boxes, ThatAreBestAtNoSizeAreTakenOutAgain) {
     EXPECT_EQ(m.textures.size(), textures + 1);
     EXPECT_EQ(m.texels.size() - texels, (with_both - texels) / 2) << "what it alone used is gone";
     EXPECT_EQ(m.parts[m.reps[m.nodes[1].first_rep].first_part].material, m.materials.size() - 1);
+}
+
+/// Of the second leaf's box, which is the best form by far: whether it stays where it covers `share` of full detail.
+bool box_stays(float share, bool has_coarse_mesh) {
+    model::Model m = two_leaves();
+    for (const model::Index leaf : {1U, 2U}) m.reps[m.nodes[leaf].first_rep].error_m = has_coarse_mesh ? 0.1F : 0.0F;
+    std::vector<BoxForm> boxes = capture_boxes(m, {{false, false, true}, true, 28}, one_by_one, go_on);
+    PlacedBoxes placed(std::move(boxes), 0, m);
+    const model::Index box = m.nodes[2].first_rep;
+    m.losses.resize(m.reps.size());
+    m.losses[box].colour.fill(0.01F);
+    m.losses[box + 1].colour.fill(0.5F);
+    std::vector<float> covered(m.reps.size(), 1.0F);
+    covered[box] = share;
+    return placed.drop_idle(model::default_costs(), covered) == 1;
+}
+
+TEST(Boxes, ThatCoverTooLittleOrTooMuchGoIfACoarseMeshIsLeft) {
+    EXPECT_FALSE(box_stays(0.4F, true));
+    EXPECT_TRUE(box_stays(0.6F, true));
+    EXPECT_TRUE(box_stays(1.0F, true));
+    EXPECT_FALSE(box_stays(2.5F, true));
+    EXPECT_TRUE(box_stays(0.4F, false)) << "full detail is no coarse mesh";
 }
 
 TEST(Boxes, OfAClusterTakeTheirLossesOfGroupsWithThem) {

@@ -128,6 +128,20 @@ TEST(LevelCoverage, WhatCoversTooLittleGrowsWithinTheBoxAndItsErrorWithIt) {
     EXPECT_GE(chain.levels[0].error_m, 0.2F);
 }
 
+TEST(LevelCoverage, TheErrorOfWhatGrewIsMeasuredAgain) {
+    const model::Model looks = plain_looks();
+    ChainOptions options;
+    options.looks = &looks;
+    LodChain chain = with_small_squares();
+    chain.levels[0].error_m = 0.001F;
+    EXPECT_TRUE(take_poor_levels(chain, options).empty());
+    ASSERT_EQ(chain.levels.size(), 2U);
+    const MeshSurface full(chain.full.vertices, chain.levels[1].parts), grown(chain.full.vertices, chain.levels[0].parts);
+    const float lower = measure::two_sided_distance(full.view(), grown.view(), {}).lower;
+    EXPECT_GT(lower, 0.01F) << "a third of the squares is missing";
+    EXPECT_GE(chain.levels[0].error_m, lower);
+}
+
 TEST(LevelCoverage, WhatCannotGrowEnoughGoesUnlessNothingElseIsLeft) {
     const model::Model looks = plain_looks();
     ChainOptions options;
