@@ -47,7 +47,9 @@ void keep_brightest(Scene& scene, BrightestLamps lamps) {
     scene.lamps = lamps.take();
     if (left_out > 0)
         scene.warnings.push_back(
-            fmt::format("{} lamps are left out: a scene has at most {}, and the brightest are kept", left_out, max_lamps));
+            fmt::format("{} lamps are left out: a scene has at most {}, and the brightest are kept. Let fewer and brighter lamps "
+                        "give the same light",
+                        left_out, max_lamps));
 }
 
 void keep_brightest(Scene& scene) {

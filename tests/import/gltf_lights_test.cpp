@@ -1,7 +1,10 @@
 // Lights and glow of glTF files: the sun, lamps of both kinds, what is wrong with them, very many of them, and emission.
 #include <gtest/gtest.h>
 
+#include <malloc.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -248,6 +251,30 @@ TEST(GltfLights, OfTooManyTheBrightestAreKeptInOrderAndTheOthersCounted) {
     EXPECT_EQ(scene.lamps[1].name, "1") << "of those that are alike the first";
     EXPECT_EQ(scene.warnings.size(), 1U);
     EXPECT_TRUE(warns(scene, "15904 lamps are left out"));
+    EXPECT_TRUE(warns(scene, ". Let fewer and brighter lamps give the same light")) << "what to do";
+}
+
+/// As a file of them is read, node by node; many_lamps_test.cpp has the file.
+TEST(GltfLights, AMillionTakeTheMemoryOfThoseThatAreKept) {
+    tinygltf::Model model;
+    model.lights.resize(2);
+    for (tinygltf::Light& light : model.lights) light.type = "point", light.color = {1, 1, 1};
+    model.lights[1].intensity = 10;
+    std::array<tinygltf::Node, 2> nodes;
+    for (int i = 0; i < 2; ++i)
+        nodes[static_cast<std::size_t>(i)].extensions["KHR_lights_punctual"] =
+            tinygltf::Value(tinygltf::Value::Object{{"light", tinygltf::Value(i)}});
+    Scene scene;
+    LightReader reader(model, scene);
+    constexpr std::size_t million = 1'000'000, kept_bytes = 1'000 * max_lamps;
+    const std::size_t before = mallinfo2().uordblks;
+    for (std::size_t i = 0; i < million; ++i) reader.add(nodes[i % 1000 == 0 ? 1 : 0], dmat4(1.0));
+    EXPECT_LT(mallinfo2().uordblks, before + kept_bytes);
+    reader.finish();
+    ASSERT_EQ(scene.lamps.size(), max_lamps);
+    EXPECT_EQ(std::count_if(scene.lamps.begin(), scene.lamps.end(), [](const Lamp& l) { return l.candela == 10; }), 1000);
+    ASSERT_EQ(scene.warnings.size(), 1U);
+    EXPECT_TRUE(warns(scene, "995904 lamps are left out"));
 }
 
 TEST(GltfLights, TheColourCountsForHowBrightALampIs) {
