@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -15,7 +17,7 @@ namespace surefoot::importer {
 namespace {
 
 constexpr std::size_t max_keys_of_motion = 1U << 16U;
-/// Of all tracks of a file: a translation and a rotation for each key that a model may have.
+/// Of all tracks of a file: a translation and a rotation for each key that a model may have. As many of scales are read.
 constexpr std::uint64_t max_keys_of_file = 2 * std::uint64_t{model::max_motion_keys};
 constexpr double scale_slack = 1e-4;  // relative, of scales over 1
 constexpr double unit_slack = 0.01;   // exporters write rotations as rounded bytes
@@ -49,6 +51,12 @@ AnimationReader::AnimationReader(const tinygltf::Model& model, const std::string
     if (const std::uint64_t keys = count_keys(); keys > max_keys_of_file) {
         flawed(Flaw::all_keys, fmt::format("All nodes are drawn at rest: their animations have {} keys, and a file may have {}",
                                            keys, max_keys_of_file));
+        return;
+    }
+    if (const std::uint64_t keys = count_scales(); keys > max_keys_of_file) {
+        flawed(Flaw::all_keys,
+               fmt::format("All nodes are drawn at rest: their animations have {} keys of scales, and a file may have {}", keys,
+                           max_keys_of_file));
         return;
     }
     find_worlds();
@@ -156,24 +164,53 @@ dmat4 AnimationReader::parent_world(std::size_t node) const {
     return parents_[node] < 0 ? dmat4(1.0) : worlds_[static_cast<std::size_t>(parents_[node])];
 }
 
-/// All keys that are kept below, before any is read: a small file may have one long track at many nodes.
+/// Whether the channel's node and sampler exist, and its values are read: they move something that is drawn.
+bool AnimationReader::is_read(const tinygltf::Animation& animation, const tinygltf::AnimationChannel& channel) const {
+    if (!holds_index(nodes_, channel.target_node) || !holds_index(animation.samplers, channel.sampler)) return false;
+    const auto node = static_cast<std::size_t>(channel.target_node);
+    return drawn_[node] && model_.nodes[node].skin < 0 && model_.nodes[node].matrix.size() != 16;
+}
+
+/// Of an accessor. Nothing: it does not exist, or has too many to be read.
+std::optional<std::uint64_t> AnimationReader::readable_values(int accessor) const {
+    if (!holds_index(model_.accessors, accessor)) return {};
+    const std::size_t count = model_.accessors[static_cast<std::size_t>(accessor)].count;
+    return count <= 3 * max_keys_of_motion ? std::optional<std::uint64_t>(count) : std::nullopt;
+}
+
+/// All keys that are read below, before any is: a small file may have one long track at many nodes. Times without values are
+/// read too.
 std::uint64_t AnimationReader::count_keys() const {
     std::uint64_t keys = 0;
     std::vector<std::size_t> first(nodes_.size(), model_.animations.size());  // the animation that moves a node
     for (std::size_t a = 0; a < model_.animations.size(); ++a) {
         const tinygltf::Animation& animation = model_.animations[a];
         for (const tinygltf::AnimationChannel& channel : animation.channels) {
-            if (!holds_index(nodes_, channel.target_node) || !holds_index(animation.samplers, channel.sampler)) continue;
+            if (channel.target_path != "translation" && channel.target_path != "rotation") continue;
+            if (!is_read(animation, channel)) continue;
             const auto node = static_cast<std::size_t>(channel.target_node);
             const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(channel.sampler)];
-            if (!drawn_[node] || model_.nodes[node].skin >= 0 || model_.nodes[node].matrix.size() == 16) continue;
-            if (!holds_index(model_.accessors, sampler.output)) continue;
-            if (channel.target_path != "translation" && channel.target_path != "rotation") continue;
+            const auto times = readable_values(sampler.input), values = readable_values(sampler.output);
+            if (!times || !values) continue;
             first[node] = std::min(first[node], a);
             if (first[node] != a) continue;
-            const std::size_t count = model_.accessors[static_cast<std::size_t>(sampler.output)].count;
-            const std::size_t values_a_key = between_of(sampler.interpolation) == Between::spline ? 3 : 1;
-            if (count <= 3 * max_keys_of_motion) keys += count / values_a_key;
+            keys += std::max(*times, *values / (between_of(sampler.interpolation) == Between::spline ? 3U : 1U));
+        }
+    }
+    return keys;
+}
+
+/// The same of scales. Many nodes may share a track of them, which is read once.
+std::uint64_t AnimationReader::count_scales() const {
+    std::uint64_t keys = 0;
+    std::set<std::pair<int, bool>> counted;
+    for (const tinygltf::Animation& animation : model_.animations) {
+        for (const tinygltf::AnimationChannel& channel : animation.channels) {
+            if (channel.target_path != "scale" || !is_read(animation, channel)) continue;
+            const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(channel.sampler)];
+            const bool spline = between_of(sampler.interpolation) == Between::spline;
+            if (counted.insert({sampler.output, spline}).second)
+                keys += readable_values(sampler.output).value_or(0) / (spline ? 3U : 1U);
         }
     }
     return keys;

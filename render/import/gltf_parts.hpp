@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -178,7 +179,10 @@ private:
     [[nodiscard]] std::string name_of_animation(int animation) const;
     void find_drawn();
     void find_worlds();
+    [[nodiscard]] bool is_read(const tinygltf::Animation& animation, const tinygltf::AnimationChannel& channel) const;
+    [[nodiscard]] std::optional<std::uint64_t> readable_values(int accessor) const;
     [[nodiscard]] std::uint64_t count_keys() const;
+    [[nodiscard]] std::uint64_t count_scales() const;
     void read_animation(int animation);
     void read_channel(int animation, const tinygltf::AnimationChannel& channel);
     void refuse(int node, Flaw flaw, const std::string& why);
