@@ -152,7 +152,9 @@ void read_mesh(const Context& context, const tinygltf::Mesh& from, Mesh& to) {
         warnings.push_back(fmt::format("Mesh '{}': {} primitives of points or lines are dropped", to.name, not_triangles));
     if (morphed > 0)
         warnings.push_back(
-            fmt::format("Mesh '{}': {} primitives are taken in their rest shape (morph targets)", to.name, morphed));
+            fmt::format("Mesh '{}': {} primitives are taken in their rest shape (morph targets). Apply the shape before the "
+                        "export",
+                        to.name, morphed));
 }
 
 }  // namespace

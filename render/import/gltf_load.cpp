@@ -8,9 +8,11 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "rt/base/file.hpp"
@@ -99,7 +101,28 @@ const json& array_in(const json& root, const char* key) {
     return found != root.end() && found->is_array() ? *found : empty;
 }
 
+bool is_of_sound(const std::string& extension) {
+    static constexpr std::array known{"KHR_audio", "KHR_audio_emitter", "KHR_audio_graph", "MSFT_audio_emitter",
+                                      "OMI_audio_emitter"};
+    return std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+/// A warning that names the extensions by which the file has sounds, if it has any: used, required, or there without a word.
+void warn_of_sound(const json& root, std::vector<std::string>& warnings) {
+    std::set<std::string> names;
+    for (const char* list : {"extensionsUsed", "extensionsRequired"})
+        for (const json& entry : array_in(root, list))
+            if (entry.is_string() && is_of_sound(entry.get_ref<const std::string&>())) names.insert(entry.get<std::string>());
+    if (const auto own = root.find("extensions"); own != root.end() && own->is_object())
+        for (const auto& [name, value] : own->items())
+            if (is_of_sound(name)) names.insert(name);
+    if (!names.empty())
+        warnings.push_back(
+            fmt::format("Sounds are left out ({}). Let another program play them beside the walk", fmt::join(names, ", ")));
+}
+
 Result<void> check_extensions(const json& root, const std::string& file, std::vector<std::string>& warnings) {
+    warn_of_sound(root, warnings);
     static constexpr std::array known{"KHR_materials_unlit",
                                       "KHR_texture_transform",
                                       "KHR_mesh_quantization",
@@ -115,7 +138,7 @@ Result<void> check_extensions(const json& root, const std::string& file, std::ve
             return Error{file, fmt::format("The file is compressed with {}", name),
                          "Decompress it (gltf-transform copy, or gltfpack -noq)", ErrorKind::unsupported};
         }
-        if (std::find(known.begin(), known.end(), name) == known.end())
+        if (std::find(known.begin(), known.end(), name) == known.end() && !is_of_sound(name))
             warnings.push_back(fmt::format("Extension {} is required but ignored", name));
     }
     return {};

@@ -172,7 +172,9 @@ private:
         if (from.mesh >= 0 && static_cast<std::size_t>(from.mesh) < scene_.meshes.size()) to.mesh = static_cast<Index>(from.mesh);
         if (from.mesh >= 0 && to.mesh == none)
             scene_.damaged(fmt::format("Node '{}' names mesh {}, which does not exist", to.name, from.mesh));
-        if (from.skin >= 0) scene_.warnings.push_back(fmt::format("Node '{}' is taken in its rest pose (skin)", to.name));
+        if (from.skin >= 0)
+            scene_.warnings.push_back(
+                fmt::format("Node '{}' is taken in its rest pose (skin). Apply the pose before the export", to.name));
         lights_.add(from, to.world);
         const auto index = static_cast<Index>(scene_.nodes.size());
         const auto instancing = from.extensions.find("EXT_mesh_gpu_instancing");
