@@ -29,6 +29,7 @@ struct FakeGl {
     GLint max_samples = 4, samples = 0;  ///< samples: of the newest renderbuffer
     int compiles = 0, bad_compile = 0;   ///< bad_compile: the how many-th compile fails, from 1
     bool links = true;
+    int linked = 0;  ///< times that a program was
     GLuint names = 0;
     std::set<std::string> uniforms{};            ///< that programs were asked for
     int blended_passes = 0;                      ///< times that blending began
@@ -112,6 +113,7 @@ inline gl::Api fake_api() {
     api.GetShaderiv = [](GLuint, GLenum, GLint* ok) {
         *ok = FakeGl::get().compiles == FakeGl::get().bad_compile ? GL_FALSE : GL_TRUE;
     };
+    api.LinkProgram = [](GLuint) { ++FakeGl::get().linked; };
     api.GetUniformLocation = [](GLuint, const GLchar* name) -> GLint {
         FakeGl::get().uniforms.insert(name);
         return 0;

@@ -62,6 +62,11 @@ TEST(SunWalk, ADeviceSwitchesEachPartOfTheLightByItself) {
     EXPECT_EQ(test::at(outcome, 1.35).light.on, (rt::Switches{false, false, false, false}));
     EXPECT_EQ(test::at(outcome, 1.75).light.on, (rt::Switches{false, false, false, true})) << "it was off at first";
     EXPECT_EQ(outcome.records.back().light.on, (rt::Switches{false, false, true, true})) << "and on again";
+    for (std::size_t i = 0; i < rt::switch_count; ++i) {  // pressed at 0.2 s, and every 0.4 s from then on
+        const rt::FrameRecord& second_frame = test::at(outcome, 0.2 + 0.4 * static_cast<double>(i) + 2.0 / 30);
+        EXPECT_EQ(second_frame.light.on.*rt::light_switches[i].on, rt::light_switches[i].name == "fog") << i;
+    }
+    EXPECT_EQ(outcome.summary.misses, 0U);
     const auto json = nlohmann::json::parse(report::to_json(outcome.summary));
     for (const auto& [key, presses] :
          {std::pair{"sunlight_presses", 1}, {"shadows_presses", 1}, {"lamps_presses", 2}, {"fog_presses", 1}})
