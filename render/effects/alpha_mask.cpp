@@ -10,6 +10,7 @@ constexpr EffectModule alpha_mask{
     .requested_by = "a material whose alpha mode is mask",
     .have = "are cut out by alpha",
     .missing = "no material has alpha mode MASK",
+    .not_here = "no material here has alpha mode MASK",
     .called_for = [](const MaterialFacts& material) { return material.alpha == model::AlphaMode::mask; },
     .vertex_declarations = "in float alpha_cutoff;\nflat out float v_alpha_cutoff;\n",
     .vertex_code = "    v_alpha_cutoff = alpha_cutoff;\n",

@@ -10,6 +10,7 @@ constexpr EffectModule blend{
     .requested_by = "a material whose alpha mode is blend",
     .have = "are transparent",
     .missing = "no material has alpha mode BLEND",
+    .not_here = "no material here has alpha mode BLEND",
     .called_for = [](const MaterialFacts& material) { return material.alpha == model::AlphaMode::blend; },
     .fragment_code = "    opacity = colour.a;\n",
     .not_everywhere = "what is blended is drawn last and hides nothing behind it",

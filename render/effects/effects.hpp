@@ -37,6 +37,7 @@ struct EffectModule {
     std::string_view name, help;     ///< help: one line for people
     std::string_view requested_by;   ///< what in a scene asks for it
     std::string_view have, missing;  ///< of a finding: "3 of 5 materials `have`", or why it is not called for
+    std::string_view not_here = "no material here has it";  ///< why a region of a model that calls for it does not
     /// Whether a material calls for it. Null: a step of the bake measures it and gives it to materials.
     bool (*called_for)(const MaterialFacts& material) = nullptr;
 

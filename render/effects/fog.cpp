@@ -19,6 +19,7 @@ constexpr EffectModule fog{
     .requested_by = "extras.fog_visibility_m of a glTF scene, or bake --fog",
     .have = "lie in fog",
     .missing = "the scene names no fog",
+    .not_here = "no material here lies in fog",
     .called_for = [](const MaterialFacts& material) { return material.in_fog; },
     .fragment_declarations = "uniform vec3 fog_colour;\nuniform float fog_density;\n",
     .fragment_code = "    colour.rgb = mix(fog_colour, colour.rgb, exp2(-fog_density / gl_FragCoord.w));\n",

@@ -23,6 +23,7 @@ constexpr EffectModule lamps{
     .requested_by = "a lamp (KHR_lights_punctual) or an emissive material, in a bake of quality full",
     .have = "are lit by lamps",
     .missing = "no lamp and nothing that glows, or the bake is of quality draft",
+    .not_here = "no lamp reaches it, and nothing here glows",
     .vertex_declarations = "in vec3 lamps_before;\nin vec3 lamps_behind;\nuniform float lamp_strength;\n",
     .vertex_code =
         "    vec3 by_lamps = turned ? lamps_behind : lamps_before;\n"

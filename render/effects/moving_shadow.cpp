@@ -26,6 +26,7 @@ constexpr EffectModule moving_shadow{
     .requested_by = "a lit mesh that stands still within reach of the shadow of something opaque that moves",
     .have = "receive moving shadows",
     .missing = "nothing moves",
+    .not_here = "no shadow of what moves reaches anything lit here",
     .vertex_declarations =
         "uniform mat4 shadow_from_eye;\nuniform vec3 shadow_towards;\nuniform float shadow_texel;\n"
         "out vec3 v_sunless;\nout vec3 v_shadow_at;\n",

@@ -28,6 +28,7 @@ constexpr EffectModule openness{
     .requested_by = "a lit mesh that something hides from the sky, in a bake of quality full",
     .have = "are shaded",
     .missing = "not measured: the bake is of quality draft, or nothing lit is hidden from the sky",
+    .not_here = "nothing lit here is hidden from the sky",
     .vertex_declarations = "in vec4 hidden;\nuniform float room_light;\n",
     .vertex_code =
         "    vec2 seen = 1.0 - (turned ? hidden.yw : hidden.xz);\n"

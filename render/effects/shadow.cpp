@@ -28,6 +28,7 @@ constexpr EffectModule shadow{
     .requested_by = "a mesh in the sun that something hides from it, in a bake of quality full",
     .have = "lie in shadow",
     .missing = "not measured: the bake is of quality draft, or nothing stands between sun and scene",
+    .not_here = "nothing hides the sun from what is here",
     .vertex_declarations = "in vec2 sun_seen;\nuniform float sun_between;\n",
     .vertex_code = "    lit -= by_sun * (1.0 - mix(sun_seen.x, sun_seen.y, sun_between));\n",
     .uniforms = shadow_uniforms,

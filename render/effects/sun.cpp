@@ -29,6 +29,7 @@ constexpr EffectModule sun{
     .requested_by = "a mesh with normals and a lit material",
     .have = "are lit",
     .missing = "every material is unlit",
+    .not_here = "nothing is lit",
     .called_for = [](const MaterialFacts& material) { return material.lit; },
     .vertex_declarations =
         "uniform vec3 sun_direction;\nuniform vec3 sun_light;\nuniform vec3 ground_light;\nuniform vec3 sky_light;\n",

@@ -17,6 +17,7 @@ constexpr EffectModule texture{
     .requested_by = "a material with a texture",
     .have = "have an image",
     .missing = "no material has an image",
+    .not_here = "no material here has an image",
     .called_for = [](const MaterialFacts& material) { return material.image; },
     .vertex_declarations = "in vec2 uv;\nin float texture_layer;\nout vec2 v_uv;\nflat out float v_layer;\n",
     .vertex_code = "    v_uv = uv;\n    v_layer = texture_layer;\n",

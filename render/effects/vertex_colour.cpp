@@ -10,6 +10,7 @@ constexpr EffectModule vertex_colour{
     .requested_by = "a mesh whose vertices carry colours",
     .have = "have vertex colours",
     .missing = "all vertex colours are white or absent",
+    .not_here = "all vertices here are white, or have no colours",
     .called_for = [](const MaterialFacts& material) { return material.vertex_colours; },
     .vertex_declarations = "in vec4 vertex_colour;\n",
     .vertex_code = "    v_colour *= vertex_colour;\n",

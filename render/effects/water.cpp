@@ -36,6 +36,7 @@ constexpr EffectModule water{
     .requested_by = "extras.water of a glTF material, or bake --water and a name that ends with the word water",
     .have = "are water",
     .missing = "no material is water by its extras, nor by its name where bake --water was given",
+    .not_here = "no material here is water",
     .called_for = [](const MaterialFacts& material) { return material.water; },
     .vertex_declarations = "out vec3 v_from_eye;\n",
     .vertex_code = "    v_from_eye = world;\n",

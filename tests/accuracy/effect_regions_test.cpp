@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+#include <vector>
+
 #include "render/model/effects_below.hpp"
 #include "tests/accuracy/effect_scene.hpp"
 #include "tools/accuracy/effect_use.hpp"
@@ -23,11 +27,33 @@ TEST(EffectRegions, SayWhatIsCalledForAndWhatOnlyCoarseFormsNeed) {
         EXPECT_EQ(effects_in_words(region), is_wall ? "sun" : "texture") << region.name;
         EXPECT_EQ(reasons_in_words(region), is_wall ? "sun: 5 of 5 triangles have it" : "sun: nothing is lit") << region.name;
         for (const RegionEffect& effect : region.effects) EXPECT_FALSE(effect.reason.empty()) << effect.name;
+        using Lines = std::vector<std::string>;
+        const std::string white = "vertex_colour: all vertices here are white, or have no colours";
+        EXPECT_EQ(reason_lines(region),
+                  is_wall ? (Lines{"texture: no material here has an image", white, "sun: 5 of 5 triangles have it"})
+                          : (Lines{"texture: 6 of 10 triangles have it", white, "sun: nothing is lit"}))
+            << region.name;
     }
     scene.model.nodes[0].child_count = 0;  // the cluster's form is full detail now
     const auto one = regions_of(scene.model);
     ASSERT_EQ(one.size(), 1U);
     EXPECT_EQ(effects_in_words(one[0]), "vertex_colour");
+}
+
+/// Of effects that the model calls for, and this region does not.
+TEST(EffectRegions, EachEffectHasItsOwnReason) {
+    EffectScene scene;
+    for (model::EffectFinding& finding : scene.model.effects) finding.called_for = true;
+    const auto regions = regions_of(scene.model);
+    ASSERT_EQ(regions.size(), 3U);
+    std::set<std::string> reasons;
+    for (const RegionEffect& effect : regions[0].effects) reasons.insert(effect.reason);
+    EXPECT_EQ(reasons.size(), regions[0].effects.size());
+    EXPECT_EQ(reason_lines(regions[0]).size(), static_cast<std::size_t>(model::effect_count));
+    for (const std::string& line : reason_lines(regions[0])) {
+        EXPECT_EQ(line.find("by hand"), std::string::npos) << line << ": that is the whole model's";
+        EXPECT_EQ(line.find("no material here has it"), std::string::npos) << line << " has no reason of its own";
+    }
 }
 
 TEST(EffectRegions, OfARoomSeeNoSky) {
@@ -39,6 +65,10 @@ TEST(EffectRegions, OfARoomSeeNoSky) {
         if (region.name.find("wall") == 0) {
             EXPECT_EQ(reasons_in_words(region), "sun: no vertex sees any sky");
             EXPECT_EQ(effects_in_words(region), "openness");
+            for (const RegionEffect& effect : region.effects)
+                if (effect.name == "baked_shadow" || effect.name == "moving_shadow") {
+                    EXPECT_EQ(effect.reason, "the sun reaches nothing");
+                }
         }
 }
 

@@ -125,6 +125,13 @@ std::string called_for(const EffectReport& r) {
            absent + "</table></div>\n";
 }
 
+/// A line for each reason.
+std::string lines_of(const EffectRegion& region) {
+    std::string out;
+    for (const std::string& line : reason_lines(region)) out += (out.empty() ? "" : "<br>") + report::escaped(line);
+    return out;
+}
+
 std::string region_tables(const EffectReport& r) {
     std::string out =
         "<h2>By region</h2>\n<p class=\"sub\">The largest regions of the hierarchy hold each object once. What <b>coarse "
@@ -135,7 +142,7 @@ std::string region_tables(const EffectReport& r) {
     for (const EffectRegion& region : r.regions)
         out += fmt::format("<tr>{0}node {1}: {2}</td><td>{3}</td>{0}{4}</td>{0}{5}</td></tr>\n", words, region.node,
                            report::escaped(region.name), report::grouped(static_cast<double>(region.triangles)),
-                           report::escaped(effects_in_words(region)), report::escaped(reasons_in_words(region)));
+                           report::escaped(effects_in_words(region)), lines_of(region));
     out +=
         "</table></div>\n<h2>Along the path</h2>\n<div class=\"card scroll\"><table>\n<tr><th>effect</th><th>frames</th>"
         "<th>items</th><th style=\"text-align:left\">why</th></tr>\n";
@@ -212,7 +219,8 @@ EffectJson json_of(const std::vector<EffectRegion>& regions) {
                        {"leaves", region.leaves},
                        {"triangles", region.triangles},
                        {"effects", effects_in_words(region)},
-                       {"why", reasons_in_words(region)}});
+                       {"why", reasons_in_words(region)},
+                       {"reasons", reason_lines(region)}});
     return out;
 }
 

@@ -20,17 +20,18 @@ std::string region_name(const model::Model& m, const model::RegionEffects& below
     return fmt::format("{}{}, {:.3g} x {:.3g} x {:.3g} m", object, others, size.x, size.y, size.z);
 }
 
-/// What was measured of light tells more than the materials.
+/// What was measured of light tells more than the materials. What no region has is explained by the whole model's finding.
 std::string reason_of(const model::Model& m, const model::RegionEffects& below, const RegionEffect& effect,
-                      model::EffectMask bit) {
+                      const effects::EffectModule& module) {
     if (effect.called_for) return fmt::format("{} of {} triangles have it", effect.triangles, below.triangles);
     if (effect.coarse_only) return "coarse forms alone need it";
     const bool measured = (below.full & model::effect_openness) != 0;
-    if (bit == model::effect_sun) return measured ? "no vertex sees any sky" : "nothing is lit";
-    if (bit == model::effect_shadow && measured && (below.full & model::effect_sun) == 0) return "the sun reaches nothing";
+    if (module.bit == model::effect_sun) return measured ? "no vertex sees any sky" : std::string(module.not_here);
+    constexpr model::EffectMask of_sun = model::effect_shadow | model::effect_moving_shadow;
+    if ((module.bit & of_sun) != 0 && measured && (below.full & model::effect_sun) == 0) return "the sun reaches nothing";
     for (const model::EffectFinding& f : m.effects)
-        if (f.bit == bit && !f.called_for) return f.reason;
-    return "no material here has it";
+        if (f.bit == module.bit && !f.called_for) return f.reason;
+    return std::string(module.not_here);
 }
 
 }  // namespace
@@ -51,7 +52,8 @@ std::vector<EffectRegion> regions_of(const model::Model& m) {
             effect.called_for = (below[n].full & module.bit) != 0;
             effect.coarse_only = !effect.called_for && (below[n].coarse & module.bit) != 0;
             effect.triangles = below[n].with_effect[static_cast<std::size_t>(std::countr_zero(module.bit + 0U))];
-            effect.reason = reason_of(m, below[n], effect, module.bit);
+            effect.of_model = (m.called_for() & module.bit) != 0;
+            effect.reason = reason_of(m, below[n], effect, module);
             region.effects.push_back(std::move(effect));
         }
         out.push_back(std::move(region));
@@ -75,6 +77,13 @@ std::string reasons_in_words(const EffectRegion& region) {
     for (const RegionEffect& effect : region.effects)
         if (effect.name == sun) return fmt::format("{}: {}", effect.name, effect.reason);
     return {};
+}
+
+std::vector<std::string> reason_lines(const EffectRegion& region) {
+    std::vector<std::string> lines;
+    for (const RegionEffect& effect : region.effects)
+        if (effect.of_model) lines.push_back(fmt::format("{}: {}", effect.name, effect.reason));
+    return lines;
 }
 
 }  // namespace surefoot::accuracy

@@ -16,6 +16,7 @@ struct RegionEffect {
     std::string name;
     bool called_for = false;   ///< by full detail
     bool coarse_only = false;  ///< else by coarse forms alone
+    bool of_model = false;     ///< the model calls for it somewhere
     std::uint64_t triangles = 0;
     std::string reason;
 };
@@ -36,5 +37,7 @@ std::vector<EffectRegion> regions_of(const model::Model& model);
 std::string effects_in_words(const EffectRegion& region);
 /// Why the sun is called for there, or why not.
 std::string reasons_in_words(const EffectRegion& region);
+/// The same of each effect that the model calls for: "sun: no vertex sees any sky".
+std::vector<std::string> reason_lines(const EffectRegion& region);
 
 }  // namespace surefoot::accuracy

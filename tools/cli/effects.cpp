@@ -91,9 +91,11 @@ nlohmann::ordered_json json_of(const std::vector<accuracy::EffectRegion>& region
 
 void print_regions(const std::vector<accuracy::EffectRegion>& regions) {
     fmt::print("\nregions of the hierarchy:\n");
-    for (const accuracy::EffectRegion& region : regions)
-        fmt::print("  node {}, {}: {} triangles\n    {}\n    {}\n", region.node, region.name, region.triangles,
-                   accuracy::effects_in_words(region), accuracy::reasons_in_words(region));
+    for (const accuracy::EffectRegion& region : regions) {
+        fmt::print("  node {}, {}: {} triangles\n    {}\n", region.node, region.name, region.triangles,
+                   accuracy::effects_in_words(region));
+        for (const std::string& line : accuracy::reason_lines(region)) fmt::print("      {}\n", line);
+    }
 }
 
 int run_effects(const EffectsArguments& a) {
