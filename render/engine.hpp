@@ -189,6 +189,10 @@ public:
     /// The next draw_unbudgeted() draws the shadow map of what moves and shows it; without this call its pictures have no such
     /// shadow. False: there is none.
     bool refresh_shadow(const Pose& pose);
+    /// Forgets the drawn shadow map: no picture shows it any more. One that the last select() bought is drawn by the next
+    /// submit(), also where another submit() drew it before. For measurements in which no frame may have what an earlier one
+    /// paid for.
+    void forget_shadow();
     /// Draws items without a budget, for images of reports: full_detail(), or a remembered set. `filter`: automatic is the best
     /// that frames may have.
     void draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution = 1,

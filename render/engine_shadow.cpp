@@ -61,4 +61,12 @@ bool Engine::refresh_shadow(const Pose& pose) {
     return true;
 }
 
+void Engine::forget_shadow() {
+    Impl& e = *impl_;
+    e.draws.plays();
+    e.shadow.forget();
+    e.shadow_unbudgeted = false;
+    e.shadow_due = e.shadow.any() && e.offers_used && e.was_bought({select::ItemKind::refresh, Impl::shadow_item});
+}
+
 }  // namespace surefoot

@@ -89,6 +89,25 @@ TEST(AccuracyOfMoving, AnAmpleBudgetShowsWhatFullDetailShows) {
     }
 }
 
+/// Budgets that buy the forms of an ample one, and not its shadow map. Earlier pictures had the map.
+TEST(AccuracyOfMoving, ABudgetThatDoesNotBuyTheShadowMapShowsNone) {
+    AccuracyRequest request = circling_ball().request;
+    request.time_s = in_view_s;
+    for (int i = 1; i <= 30; ++i) request.budgets_ms.push_back(0.05 * i);
+    const auto run = run_accuracy(request, {});
+    ASSERT_TRUE(run.ok()) << run.error().text();
+    const AccuracyPoint& ample = run->points.front();
+    EXPECT_GT(ample.psnr_db, 60);
+    constexpr double map_us = 100;  // takes more
+    int without = 0;
+    for (const AccuracyPoint& point : run->points) {
+        if (point.triangles != ample.triangles || point.cost_us > ample.cost_us - map_us) continue;
+        ++without;
+        EXPECT_LT(point.psnr_db, 45) << point.budget_ms << " ms";
+    }
+    EXPECT_GT(without, 0);
+}
+
 TEST(AccuracyOfMoving, EffectsAreCountedAsOfTheTime) {
     EffectReport early, late;
     for (const double time_s : {out_of_view_s, in_view_s}) {

@@ -290,6 +290,23 @@ TEST(MovingShadow, StaysForAWhileWhereThereIsNoTimeAndIsThenLeftOut) {
     EXPECT_TRUE(frames.frame(1.2).shadow_shown);
 }
 
+TEST(MovingShadow, ThatIsForgottenIsInNoPictureUntilItIsBought) {
+    ShadowFrames frames(gl::BackendKind::null);
+    ASSERT_NE(frames.engine, nullptr);
+    const SubmitReport first = frames.frame(1);
+    ASSERT_TRUE(first.shadow_refreshed);
+    frames.engine->forget_shadow();
+    const SubmitReport again = frames.engine->submit(frames.pose, frames.limits);
+    EXPECT_TRUE(again.shadow_refreshed && again.shadow_shown) << "the selection bought it";
+    EXPECT_EQ(again.predicted_us, first.predicted_us);
+    frames.engine->forget_shadow();
+    const double floor_us = 1;
+    const SubmitReport poor = frames.frame(1, floor_us);
+    EXPECT_FALSE(poor.shadow_refreshed || poor.shadow_shown) << "an earlier frame paid for it";
+    frames.engine->forget_shadow();
+    EXPECT_FALSE(frames.engine->submit(frames.pose, frames.limits).shadow_refreshed) << "this selection did not buy it";
+}
+
 /// A ball whose shadow falls on the middle of the lawn from `high_m` at time 0, by the sun of baked_lawn().
 dvec3 above_the_middle(double high_m) {
     const dvec3 sun(baked_lawn().sun_direction);

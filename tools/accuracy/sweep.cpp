@@ -127,6 +127,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
     const SubmitLimits limits = no_limits();
     const auto n = static_cast<double>(stations.size());
     for (const Station& station : stations) {
+        engine.forget_shadow();  // another place or budget has paid for it
         const select::Cut& cut = engine.select(station.prepared, budget_us, {}, target_error_rad);
         worst_rad = std::max(worst_rad, double{cut.worst_error_rad});
         if (cut.worst_error_rad > model::exact_up_to_rad) {
@@ -141,6 +142,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
         std::vector<double> ms;
         ms.reserve(static_cast<std::size_t>(repeats));
         for (int i = 0; i < repeats; ++i) {
+            engine.forget_shadow();  // if it was bought, each of them draws it
             const SubmitReport report = engine.submit(station.pose, limits);
             ms.push_back(report.finished_us * 1e-3);
             if (i == 0) point.estimated_gain += report.one_more_ms / n;
