@@ -191,7 +191,8 @@ bool MovingShadow::choose_forms(const ShadowScene& scene, Index index) {
     const Index motion = model::motion_of(m, node);
     const std::size_t first = items_.size();
     // Forms that were taken back were visited for nothing, so visits are bounded too.
-    bool all = node.child_count > 0 && first + node.child_count <= limits_.items && ++visits_ < limits_.items;
+    bool all = node.child_count > 0 && first + node.child_count <= limits_.items && visits_ + 1 < limits_.items;
+    visits_ += all ? 1 : 0;
     for (Index c = node.first_child; all && c < node.first_child + node.child_count; ++c)
         all = model::motion_of(m, m.nodes[c]) != motion || choose_forms(scene, c);
     if (all) return true;

@@ -58,6 +58,8 @@ public:
     /// Of the planned map.
     [[nodiscard]] const gl::ShadowView& view() const { return view_; }
     [[nodiscard]] std::span<const gl::DrawItem> items() const { return items_; }
+    /// Nodes whose children the last plan looked at: fewer than ShadowLimits::items.
+    [[nodiscard]] std::size_t visits() const { return visits_; }
     /// Predicted, to draw it: its triangles, its texels and the end of a pass.
     [[nodiscard]] float price_us(const model::Model& model, const model::CostModel& costs) const;
     /// Weighted pixels that it changes: of shadows, times what the sun makes there. Against the drawn map, or against none where

@@ -194,6 +194,28 @@ TEST(MovingShadow, WhatDoesNotFitIntoTheMapIsNotInIt) {
     EXPECT_EQ(by_items.shadow.value(scene, eye_of_lawn), by_casters.shadow.value(scene, eye_of_lawn));
 }
 
+/// Two hundred beads that move together: a tree of many nodes, whose forms hardly fit into a small map.
+TEST(MovingShadow, APlanLooksAtABoundedNumberOfNodes) {
+    importer::Scene scene = lawn_and_ball();
+    scene.nodes.pop_back();
+    const auto bead = bake::add_mesh(scene, bake::ball(6, 0.4F), "bead");
+    const auto lift = bake::add_lift(scene, dvec3(0, 1, 0), 10);
+    for (int row = 0; row < 10; ++row)
+        for (int column = 0; column < 20; ++column) bake::place_moving(scene, bead, dvec3(column - 9.5, 1, 1.5 * row - 6), lift);
+    const auto m = bake::bake(scene, {}, {});
+    ASSERT_TRUE(m.ok());
+    std::size_t bound_reached = 0;
+    for (const std::size_t items : {4U, 8U, 16U, 32U, 64U, 4096U}) {
+        PlannedLawn lawn(*m, {.items = items});
+        ASSERT_TRUE(lawn.shadow.plan(lawn.at(1), eye_of_lawn)) << items;
+        EXPECT_GT(lawn.shadow.visits(), 0U) << items;
+        EXPECT_LT(lawn.shadow.visits(), items) << items;
+        EXPECT_LE(lawn.shadow.items().size(), items) << items;
+        bound_reached += lawn.shadow.visits() + 1 == items ? 1 : 0;
+    }
+    EXPECT_GT(bound_reached, 0U) << "else nothing is bounded here";
+}
+
 TEST(MovingShadow, ANewcomerIsOfferedAndHidesNoOther) {
     importer::Scene scene = lawn_and_ball();
     scene.nodes.back().motion = bake::add_lift(scene, dvec3(0, 1e-4, 0), 100);  // as good as still

@@ -79,15 +79,16 @@ MovingScene shaft_with_a_gate(double gate_from) {
 }
 
 /// Walks into the shaft, waits until the gate is shut, and pushes until it is put elsewhere. Returns for how many ticks it
-/// pushed.
-int push_out_of_shaft(Rider& rider) {
+/// pushed. A hand that trembles also pushes aside, to and fro.
+int push_out_of_shaft(Rider& rider, double tremble_m_s = 0) {
     do rider.push({1.4, 0, 0}, 0.1);
     while (rider.time_s < 10 && rider.walker.feet().y > 0.01);
     EXPECT_NEAR(rider.walker.feet().y, 0, 0.01) << "it is in the shaft";
     rider.wait(gate_shuts_s + 0.5 - rider.time_s);
     int ticks = 0;
     const auto jumps = [&] { return rider.walker.returns() + rider.walker.freed(); };
-    for (const double until_s = rider.time_s + 8; rider.time_s < until_s && jumps() == 0; ++ticks) rider.step({1, 0, 0});
+    for (const double until_s = rider.time_s + 8; rider.time_s < until_s && jumps() == 0; ++ticks)
+        rider.step({1, 0, ticks % 2 == 0 ? tremble_m_s : -tremble_m_s});
     EXPECT_EQ(jumps(), 1U);
     rider.push({0, 0, 0.5}, 1);
     EXPECT_EQ(rider.walker.put_aside() + rider.walker.passed_through(), 0U) << "nothing is where it was put";
@@ -118,6 +119,14 @@ TEST(Moving, AStuckWalkerLooksAtFewPlacesATick) {
     EXPECT_LT(last.eye.x, -6.45);
     EXPECT_GE(ticks_to_last - ticks_to_first, 6) << "fifteen places are shut";
     EXPECT_LT(ticks_to_last - ticks_to_first, 12);
+}
+
+/// While it looks for a free place among those that are shut, it moves a little where it is.
+TEST(Moving, AStuckWalkerRemembersNoPlaceWhileItIsStuck) {
+    Rider rider(shaft_with_a_gate(-6.2), {-8, 2.6, 0});
+    push_out_of_shaft(rider, 0.5);
+    EXPECT_EQ(rider.walker.returns(), 1U);
+    EXPECT_LT(rider.eye.x, -6.45) << "before the gate, and not in the shaft again";
 }
 
 TEST(Moving, ALiftCarriesUpAndDownAndTheEyeKeepsItsHeight) {

@@ -144,6 +144,7 @@ protected:
         options.device.switches = switch_groups(request_, true, sun | fog | shadows_);
         options.rest_after_ms = rest_after_ms;
         options.buys_effects = request_.buy_effects;
+        options.effect_hours = effect_hours(request_);
         auto opened = Engine::open(std::move(model), costs_, options);
         ASSERT_TRUE(opened.ok()) << opened.error().text();
         engine_ = std::move(*opened);
@@ -294,6 +295,24 @@ TEST_F(LightWalk, AnHourThatRunsIsShownAtRestToo) {
         engine_->draw_unbudgeted(path_.samples[0].pose, engine_->full_detail(path_.samples[0].pose));
         EXPECT_EQ(picture(), shown) << "slot " << slot << " shows the light of another hour";
     }
+}
+
+/// A set that was prepared before its frame's light was known would value effects at midnight, the first light of the day.
+TEST_F(LightWalk, TheFirstSetValuesEffectsAtTheHourOfTheStart) {
+    request_.hour = 12;
+    request_.hour_speed = 1;
+    request_.buy_effects = true;
+    open();
+    frame(0);
+    const auto first = prepared_.front().effect_value;
+    EXPECT_GT(first[0], 0) << "sunlight";
+    frame(1);
+    EXPECT_EQ(prepared_.front().effect_value, first) << "the same view in the same light";
+    stages_.reset();
+    request_.hour = 0;
+    open();
+    frame(0);
+    EXPECT_NE(prepared_.front().effect_value, first) << "midnight is another light";
 }
 
 TEST_F(LightWalk, APartThatIsTooDearIsDroppedAndSnapshotsDrawTheirFramesPicture) {
