@@ -112,7 +112,7 @@ void BakeContext::adopt_materials() {
     cut_out = cut_out_materials(scene);
     hidden = hidden_materials(scene, model.provenance.warnings);
     set_own_light(scene, options.sun, options.fog_visibility_m.value_or(scene.fog_visibility_m), model);
-    proxy = add_materials(scene, model, options.water_by_name);
+    proxy = add_materials(scene, model, {options.water_by_name, options.light_by_pixel});
     bool coloured = false;
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         coloured |= (model.materials[m].effects & (model::effect_texture | model::effect_vertex_colour)) != 0;

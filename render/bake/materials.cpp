@@ -215,7 +215,7 @@ bool is_named_water(std::string_view name) {
     return !is_letter(before) || (last.front() == 'W' && std::islower(static_cast<unsigned char>(before)) != 0);
 }
 
-model::Index add_materials(const importer::Scene& scene, model::Model& model, bool water_by_name) {
+model::Index add_materials(const importer::Scene& scene, model::Model& model, const MaterialRules& rules) {
     const std::vector<model::Index> textures = add_images(scene, model);
     const std::vector<bool> coloured = coloured_materials(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
@@ -231,7 +231,9 @@ model::Index add_materials(const importer::Scene& scene, model::Model& model, bo
         facts.vertex_colours = coloured[i];
         facts.lit = !from.unlit;
         facts.in_fog = model.light.fog_visibility_m > 0;
-        facts.water = from.water.value_or(water_by_name && is_named_water(from.name));
+        facts.water = from.water.value_or(rules.water_by_name && is_named_water(from.name));
+        facts.light_by_pixel =
+            from.light == importer::LightPlace::pixel || (from.light == importer::LightPlace::by_bake && rules.light_by_pixel);
         facts.alpha = from.alpha;
         to.effects = effects::called_for_by(facts);
         model.materials.push_back(to);

@@ -17,9 +17,15 @@
 
 namespace surefoot::bake {
 
+/// What the caller says of materials, where their files say nothing.
+struct MaterialRules {
+    bool water_by_name = false;   ///< as is_named_water() says
+    bool light_by_pixel = false;  ///< all that is lit, but for coarse forms of several materials
+};
+
 /// Fills model.materials and model.textures, with mip levels and alpha bleeding. Each material has the effects that it calls for
 /// by itself; the model has its fog already. Appends the proxy material (vertex colours and sun) and returns its index.
-model::Index add_materials(const importer::Scene& scene, model::Model& model, bool water_by_name = false);
+model::Index add_materials(const importer::Scene& scene, model::Model& model, const MaterialRules& rules = {});
 /// Whether the last word of a material's name is "water": "Pond_water.001", "oceanicWater.png", and not "waterfall".
 bool is_named_water(std::string_view name);
 /// By material of the scene: whether its alpha test drops at least one texel, and so cuts shapes out of triangles.

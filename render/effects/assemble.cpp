@@ -1,4 +1,6 @@
 // Programs from modules: the bare pipeline, and into its slots the pieces of a mask's effects and of no other.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -17,11 +19,18 @@ constexpr std::string_view normal_code =
     "    vec3 cofactor_y = cross(world_rows[2].xyz, world_rows[0].xyz);\n"
     "    vec3 cofactor_z = cross(world_rows[0].xyz, world_rows[1].xyz);\n"
     "    vec3 n = vec3(dot(cofactor_x, normal), dot(cofactor_y, normal), dot(cofactor_z, normal));\n"
-    "    n *= inversesqrt(max(dot(n, n), 1e-30)) * sign(dot(world_rows[0].xyz, cofactor_x));\n"
+    "    n *= inversesqrt(max(dot(n, n), 1e-30)) * sign(dot(world_rows[0].xyz, cofactor_x));\n";
+constexpr std::string_view turn_code =
     "    bool turned = two_sided > 0.5 && dot(n, world) > 0.0;\n"
-    "    if (turned) n = -n;\n"
-    "    vec3 lit = vec3(1.0), by_sun = vec3(0.0);\n";
-constexpr std::string_view light_code = "    v_colour.rgb *= lit;\n";
+    "    if (turned) n = -n;\n";
+// By the pixel, the fragment program has what light reads at a vertex, interpolated and under the same names.
+constexpr std::string_view pixel_normal_out = "out vec3 v_normal;\nout vec3 v_lit_at;\nflat out float v_two_sided;\n";
+constexpr std::string_view pixel_normal_sent = "    v_normal = n;\n    v_lit_at = world;\n    v_two_sided = two_sided;\n";
+constexpr std::string_view pixel_normal_in = "in vec3 v_normal;\nin vec3 v_lit_at;\nflat in float v_two_sided;\n";
+constexpr std::string_view pixel_normal_code =
+    "    vec3 world = v_lit_at;\n"
+    "    float two_sided = v_two_sided;\n"
+    "    vec3 n = v_normal * inversesqrt(max(dot(v_normal, v_normal), 1e-30));\n";
 
 }  // namespace
 
@@ -37,15 +46,67 @@ std::span<const EffectModule> all_effects() {
 
 namespace {
 
-/// The light without the sun's own part: all modules of light once more, in a scope in which the sun is dark.
-std::string sunless_code(std::span<const EffectModule* const> modules) {
-    std::string code =
-        "    vec3 sunless;\n"
-        "    {\n"
-        "    vec3 lit = vec3(1.0), by_sun = vec3(0.0), sun_light = vec3(0.0);\n";
-    for (const EffectModule* const module : modules)
-        if (module->is_light) code += module->vertex_code;
-    return code + "    sunless = lit;\n    }\n";
+/// What light adds to a program: before the code of modules, and after it.
+struct LightText {
+    std::string vertex_declarations, vertex_before, vertex_after, fragment_declarations, fragment_before;
+};
+
+/// All code of light. What needs the light without the sun's own part gets it once more, in a scope in which the sun is dark.
+std::string lit_code(const std::string& code, bool needs_sunless) {
+    const std::string begin = "    vec3 lit = vec3(1.0), by_sun = vec3(0.0)";
+    if (!needs_sunless) return begin + ";\n" + code;
+    return "    vec3 sunless;\n    {\n" + begin + ", sun_light = vec3(0.0);\n" + code + "    sunless = lit;\n    }\n" + begin +
+           ";\n" + code;
+}
+
+LightText light_text(std::span<const EffectModule* const> modules, bool by_pixel) {
+    LightText text;
+    std::string declarations, code;
+    bool has_light = false, needs_sunless = false;
+    for (const EffectModule* const module : modules) {
+        has_light = has_light || module->is_light() || module->needs_sunless;
+        needs_sunless = needs_sunless || module->needs_sunless;
+        declarations += module->light_declarations;
+        code += module->light_code;
+        for (const LightInput& input : module->light_inputs)
+            text.vertex_declarations += fmt::format("in {} {};\n", input.type, input.name);
+    }
+    if (!has_light) return text;
+    text.vertex_declarations += normal_declarations;
+    text.vertex_before = normal_code;
+    if (!by_pixel) {
+        text.vertex_declarations += declarations;
+        text.vertex_before += turn_code;
+        text.vertex_before += lit_code(code, needs_sunless);
+        text.vertex_after = "    v_colour.rgb *= lit;\n";
+        if (!needs_sunless) return text;
+        text.vertex_declarations += "out vec3 v_sunless;\n";
+        text.vertex_after = "    v_sunless = v_colour.rgb * sunless;\n" + text.vertex_after;
+        text.fragment_declarations = "in vec3 v_sunless;\n";
+        text.fragment_before = "    vec3 in_shadow = v_sunless / max(v_colour.rgb, vec3(1e-4));\n";
+        return text;
+    }
+    text.vertex_declarations += pixel_normal_out;
+    text.vertex_before += pixel_normal_sent;
+    text.fragment_declarations = pixel_normal_in;
+    // A scope of its own: names of light are not those of modules.
+    text.fragment_before = needs_sunless ? "    vec3 in_shadow;\n    {\n" : "    {\n";
+    text.fragment_before += pixel_normal_code;
+    for (const EffectModule* const module : modules) {
+        for (const auto& [type, name] : module->light_inputs) {
+            text.vertex_declarations += fmt::format("out {} v_{};\n", type, name);
+            text.vertex_before += fmt::format("    v_{0} = {0};\n", name);
+            text.fragment_declarations += fmt::format("in {} v_{};\n", type, name);
+            text.fragment_before += fmt::format("    {0} {1} = v_{1};\n", type, name);
+        }
+    }
+    if (needs_sunless) text.vertex_before += turn_code;  // for the module's own code there
+    text.fragment_declarations += declarations;
+    text.fragment_before += turn_code;
+    text.fragment_before += lit_code(code, needs_sunless) + "    colour.rgb *= lit;\n";
+    if (needs_sunless) text.fragment_before += "    in_shadow = sunless / max(lit, vec3(1e-4));\n";
+    text.fragment_before += "    }\n";
+    return text;
 }
 
 /// The effects of a mask, in the order of application.
@@ -112,22 +173,18 @@ std::string effects_text(model::EffectMask mask, std::string_view between) {
 }
 
 gl::ProgramSource assemble_program(model::EffectMask mask) {
-    std::string vertex_declarations;
-    std::string vertex_code;
-    std::string fragment_declarations;
+    const std::vector<const EffectModule*> modules = modules_of(mask);
+    const bool by_pixel = (mask & model::effect_light_by_pixel) != 0;
+    const LightText light = light_text(modules, by_pixel);
+    std::string vertex_declarations = light.vertex_declarations;
+    std::string vertex_code = light.vertex_before;
+    std::string fragment_declarations = light.fragment_declarations;
     std::string fragment_code;
     std::string fragment_code_samples;
     gl::ProgramSource source;
-    bool covers = false, has_light = false, varies = false;
-    const std::vector<const EffectModule*> modules = modules_of(mask);
+    bool covers = false, varies = false;
     for (const EffectModule* const one : modules) {
         const EffectModule& module = *one;
-        if ((module.is_light || module.needs_sunless) && !has_light) {
-            vertex_declarations += normal_declarations;
-            vertex_code += normal_code;
-            has_light = true;
-        }
-        if (module.needs_sunless) vertex_code += sunless_code(modules);
         vertex_declarations += module.vertex_declarations;
         vertex_code += module.vertex_code;
         fragment_declarations += module.fragment_declarations;
@@ -135,11 +192,10 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
         const bool other = !module.fragment_code_samples.empty() && (mask & model::effect_blend) == 0;
         fragment_code_samples += other ? module.fragment_code_samples : module.fragment_code;
         covers = covers || other;
-        varies = varies || module.varies_colour;
+        varies = varies || (module.varies_colour && !(by_pixel && module.is_light()));
         source.uniforms.insert(source.uniforms.end(), module.uniforms.begin(), module.uniforms.end());
         source.samplers.insert(source.samplers.end(), module.samplers.begin(), module.samplers.end());
     }
-    if (has_light) vertex_code += light_code;
     // A colour that no effect varies over the triangle needs no interpolation.
     const std::string flat = varies ? "" : "flat ";
     source.name = effects_text(mask);
@@ -154,7 +210,7 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
         "    vec4 local = vec4(position, 1.0);\n"
         "    vec3 world = vec3(dot(world_rows[0], local), dot(world_rows[1], local), dot(world_rows[2], local));\n"
         "    v_colour = material_colour;\n" +
-        vertex_code +
+        vertex_code + light.vertex_after +
         "    gl_Position = view_projection * vec4(world, 1.0);\n"
         "}\n";
     const auto fragment = [&](const std::string& code) {
@@ -163,7 +219,7 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
                "void main() {\n"
                "    vec4 colour = v_colour;\n"
                "    float opacity = 1.0;\n" +
-               code +
+               light.fragment_before + code +
                "    pixel = vec4(colour.rgb, opacity);\n"
                "}\n";
     };

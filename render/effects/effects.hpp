@@ -19,7 +19,7 @@ struct SurfaceLight;
 /// What a material, and the scene around it, call for effects by.
 struct MaterialFacts {
     bool image = false, vertex_colours = false, lit = false;
-    bool in_fog = false, water = false;
+    bool in_fog = false, water = false, light_by_pixel = false;
     model::AlphaMode alpha = model::AlphaMode::opaque;
 };
 
@@ -29,6 +29,11 @@ struct MaterialUse {
     bool white = true;   ///< a colour that changes nothing
     bool open = true;    ///< nothing is hidden from them
     bool no_sky = true;  ///< openness leaves nothing of the sun
+};
+
+/// What light reads of a vertex: the GLSL type and the name of an attribute.
+struct LightInput {
+    std::string_view type, name;
 };
 
 /// One effect: what calls for it, its GLSL pieces for the named slots of the bare program, its price and its worth.
@@ -48,9 +53,12 @@ struct EffectModule {
     std::span<const gl::UniformSource> uniforms = {};  ///< that its pieces declare
     std::span<const gl::SamplerSource> samplers = {};
     bool varies_colour = false;  ///< vertices of a triangle may have different colours by it
-    /// vertex_code may read the normal `n` and whether it was `turned` to the eye; write `lit`, and of it the share `by_sun`.
-    bool is_light = false;
-    /// vertex_code may read `n`, `lit` and `sunless`: the light without the sun's own part, as all modules with light leave it.
+    /// Of a module with light. Its code may read the normal `n`, whether it was `turned` to the eye, and its inputs. It writes
+    /// `lit`, and of it the share `by_sun`. It stands in the vertex program, or in that of pixels (effect_light_by_pixel).
+    std::string_view light_declarations = {}, light_code = {};
+    std::span<const LightInput> light_inputs = {};
+    [[nodiscard]] constexpr bool is_light() const { return !light_code.empty(); }
+    /// vertex_code may read `n`; fragment_code may read `in_shadow`: the share of the light that is left without the sun.
     bool needs_sunless = false;
     int order = 0;  ///< of application; effects of the same order go by bit
 
@@ -58,7 +66,7 @@ struct EffectModule {
     model::EffectMask priced_on = 0;
     /// Until it is measured: as on llvmpipe with two cores. `effect` is `bit` or, without a price, 0.
     model::EffectPrice usual_price = {};
-    /// Of a module with light: what vertex_code does, on the processor. The difference that it makes is the effect's worth.
+    /// Of a module with light: what light_code does, on the processor. The difference that it makes is the effect's worth.
     void (*light)(const SurfacePoint& point, const model::Daylight& of_moment, SurfaceLight& out) = nullptr;
     bool moves = false;           ///< its picture changes with the time
     bool hides_by_depth = false;  ///< its worth: what is far shows the colour behind everything instead of its own

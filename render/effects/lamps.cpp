@@ -13,6 +13,7 @@ void light_by_lamps(const SurfacePoint& point, const model::Daylight& of_moment,
 constexpr std::array<gl::UniformSource, 1> lamp_uniforms{{
     {"lamp_strength", 1, [](const gl::PictureMoment& moment, float* to) { *to = moment.light.lamp_strength; }},
 }};
+constexpr std::array<LightInput, 2> lamp_inputs{{{"vec3", "lamps_before"}, {"vec3", "lamps_behind"}}};
 
 }  // namespace
 
@@ -24,13 +25,13 @@ constexpr EffectModule lamps{
     .have = "are lit by lamps",
     .missing = "no lamp and nothing that glows, or the bake is of quality draft",
     .not_here = "no lamp reaches it, and nothing here glows",
-    .vertex_declarations = "in vec3 lamps_before;\nin vec3 lamps_behind;\nuniform float lamp_strength;\n",
-    .vertex_code =
-        "    vec3 by_lamps = turned ? lamps_behind : lamps_before;\n"
-        "    lit += lamp_strength * by_lamps * by_lamps;\n",
     .uniforms = lamp_uniforms,
     .varies_colour = true,
-    .is_light = true,
+    .light_declarations = "uniform float lamp_strength;\n",
+    .light_code =
+        "    vec3 by_lamps = turned ? lamps_behind : lamps_before;\n"
+        "    lit += lamp_strength * by_lamps * by_lamps;\n",
+    .light_inputs = lamp_inputs,
     .order = 5,
     .priced_on = model::effect_texture | model::effect_sun,
     .usual_price = {model::effect_lamps, 2.2F, 0.7F, 0},

@@ -29,16 +29,13 @@ constexpr EffectModule moving_shadow{
     .not_here = "no shadow of what moves reaches anything lit here",
     .vertex_declarations =
         "uniform mat4 shadow_from_eye;\nuniform vec3 shadow_towards;\nuniform float shadow_texel;\n"
-        "out vec3 v_sunless;\nout vec3 v_shadow_at;\n",
+        "out vec3 v_shadow_at;\n",
     .vertex_code =
-        "    v_sunless = v_colour.rgb * sunless;\n"
         "    v_shadow_at = (shadow_from_eye * vec4(world, 1.0)).xyz;\n"
         "    float facing = clamp(dot(n, shadow_towards), 0.25, 1.0);\n"
         "    v_shadow_at.z += shadow_texel * (0.5 + sqrt(1.0 - facing * facing) / facing);\n",
-    .fragment_declarations = "in vec3 v_sunless;\nin vec3 v_shadow_at;\nuniform sampler2DShadow shadow_map;\n",
-    .fragment_code =
-        "    vec3 in_shadow = v_sunless / max(v_colour.rgb, vec3(1e-4));\n"
-        "    colour.rgb *= mix(in_shadow, vec3(1.0), texture(shadow_map, v_shadow_at));\n",
+    .fragment_declarations = "in vec3 v_shadow_at;\nuniform sampler2DShadow shadow_map;\n",
+    .fragment_code = "    colour.rgb *= mix(in_shadow, vec3(1.0), texture(shadow_map, v_shadow_at));\n",
     .uniforms = shadow_map_uniforms,
     .samplers = shadow_map_samplers,
     .needs_sunless = true,

@@ -18,6 +18,7 @@ void light_by_openness(const SurfacePoint& point, const model::Daylight& of_mome
 constexpr std::array<gl::UniformSource, 1> room_uniforms{{
     {"room_light", 1, [](const gl::PictureMoment& moment, float* to) { *to = moment.light.room_light; }},
 }};
+constexpr std::array<LightInput, 1> openness_inputs{{{"vec4", "hidden"}}};
 
 }  // namespace
 
@@ -29,14 +30,14 @@ constexpr EffectModule openness{
     .have = "are shaded",
     .missing = "not measured: the bake is of quality draft, or nothing lit is hidden from the sky",
     .not_here = "nothing lit here is hidden from the sky",
-    .vertex_declarations = "in vec4 hidden;\nuniform float room_light;\n",
-    .vertex_code =
+    .uniforms = room_uniforms,
+    .varies_colour = true,
+    .light_declarations = "uniform float room_light;\n",
+    .light_code =
         "    vec2 seen = 1.0 - (turned ? hidden.yw : hidden.xz);\n"
         "    vec3 room = room_light * (vec3(0.98, 0.95, 0.91) + (0.06 * n.x + 0.12 * n.y - 0.04 * n.z));\n"
         "    lit = mix(room, lit, min(1.0, 4.0 * seen.x)) * (0.6 + 0.4 * seen.y);\n",
-    .uniforms = room_uniforms,
-    .varies_colour = true,
-    .is_light = true,
+    .light_inputs = openness_inputs,
     .order = 4,
     .priced_on = model::effect_texture | model::effect_sun,
     .usual_price = {model::effect_openness, 0, 0, 0},

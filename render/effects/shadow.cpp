@@ -18,6 +18,7 @@ void take_shadow(const SurfacePoint& point, const model::Daylight& of_moment, Su
 constexpr std::array<gl::UniformSource, 1> shadow_uniforms{{
     {"sun_between", 1, [](const gl::PictureMoment& moment, float* to) { *to = moment.light.sun_between; }},
 }};
+constexpr std::array<LightInput, 1> shadow_inputs{{{"vec2", "sun_seen"}}};
 
 }  // namespace
 
@@ -29,10 +30,10 @@ constexpr EffectModule shadow{
     .have = "lie in shadow",
     .missing = "not measured: the bake is of quality draft, or nothing stands between sun and scene",
     .not_here = "nothing hides the sun from what is here",
-    .vertex_declarations = "in vec2 sun_seen;\nuniform float sun_between;\n",
-    .vertex_code = "    lit -= by_sun * (1.0 - mix(sun_seen.x, sun_seen.y, sun_between));\n",
     .uniforms = shadow_uniforms,
-    .is_light = true,
+    .light_declarations = "uniform float sun_between;\n",
+    .light_code = "    lit -= by_sun * (1.0 - mix(sun_seen.x, sun_seen.y, sun_between));\n",
+    .light_inputs = shadow_inputs,
     .order = 3,
     .priced_on = model::effect_texture | model::effect_sun,
     .usual_price = {model::effect_shadow, 0.9F, 0, 0},

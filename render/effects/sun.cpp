@@ -1,4 +1,4 @@
-// Effect: sun and sky light, computed at the vertices (Gouraud): a hemisphere from ground to sky plus one directional sun.
+// Effect: sun and sky light, by default at the vertices (Gouraud): a hemisphere from ground to sky plus one directional sun.
 #include <algorithm>
 
 #include "render/effects/modules.hpp"
@@ -25,20 +25,19 @@ constexpr std::array<gl::UniformSource, 4> sun_uniforms{{
 constexpr EffectModule sun{
     .bit = model::effect_sun,
     .name = "sun",
-    .help = "sun and sky light at the vertices",
+    .help = "sun and sky light",
     .requested_by = "a mesh with normals and a lit material",
     .have = "are lit",
     .missing = "every material is unlit",
     .not_here = "nothing is lit",
     .called_for = [](const MaterialFacts& material) { return material.lit; },
-    .vertex_declarations =
-        "uniform vec3 sun_direction;\nuniform vec3 sun_light;\nuniform vec3 ground_light;\nuniform vec3 sky_light;\n",
-    .vertex_code =
-        "    by_sun = sun_light * max(dot(n, sun_direction), 0.0);\n"
-        "    lit *= mix(ground_light, sky_light, 0.5 * n.y + 0.5) + by_sun;\n",
     .uniforms = sun_uniforms,
     .varies_colour = true,
-    .is_light = true,
+    .light_declarations =
+        "uniform vec3 sun_direction;\nuniform vec3 sun_light;\nuniform vec3 ground_light;\nuniform vec3 sky_light;\n",
+    .light_code =
+        "    by_sun = sun_light * max(dot(n, sun_direction), 0.0);\n"
+        "    lit *= mix(ground_light, sky_light, 0.5 * n.y + 0.5) + by_sun;\n",
     .priced_on = model::effect_texture,
     .usual_price = {model::effect_sun, 2.3F, 1.4F, 0.06F},
     .light = light_by_sun,

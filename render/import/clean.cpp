@@ -159,6 +159,19 @@ void repair(Primitive& primitive, Repairs& counts) {
     counts.normals += make_normals(primitive);
 }
 
+void make_flat(Primitive& primitive) {
+    const std::vector<std::uint32_t> corners = primitive.indices;
+    gather(primitive.positions, corners);
+    gather(primitive.uvs, corners);
+    gather(primitive.colours, corners);
+    primitive.normals.resize(corners.size());
+    for (std::size_t i = 0; i < corners.size(); ++i) primitive.indices[i] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
+        const vec3 normal(glm::normalize(area_vector(primitive, &primitive.indices[i])));
+        for (std::size_t k = 0; k < 3; ++k) primitive.normals[i + k] = normal;
+    }
+}
+
 void report_repairs(const Repairs& counts, const std::string& mesh_name, std::vector<std::string>& warnings,
                     std::vector<std::string>& lacks) {
     const auto line = [&](std::uint64_t count, const char* what) {

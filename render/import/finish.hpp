@@ -49,6 +49,8 @@ struct Repairs {
 
 /// Cleans the primitive and adds to the counts.
 void repair(Primitive& primitive, Repairs& counts);
+/// Of a repaired one: triangles share no vertex any more, and each has its own normal at its corners.
+void make_flat(Primitive& primitive);
 /// Adds one warning for each count above zero. Those of broken (not only useless) data are added to `lacks` too.
 void report_repairs(const Repairs& counts, const std::string& mesh_name, std::vector<std::string>& warnings,
                     std::vector<std::string>& lacks);

@@ -139,6 +139,19 @@ std::optional<bool> water_of(const tinygltf::Material& from, const std::string& 
     return {};
 }
 
+/// Extras `light`: "flat", "vertex" or "pixel".
+LightPlace light_place_of(const tinygltf::Material& from, const std::string& name, Scene& scene) {
+    if (!from.extras.IsObject() || !from.extras.Has("light")) return LightPlace::by_bake;
+    const tinygltf::Value& value = from.extras.Get("light");
+    const std::string word = value.IsString() ? value.Get<std::string>() : "";
+    if (word == "flat") return LightPlace::flat;
+    if (word == "vertex") return LightPlace::vertex;
+    if (word == "pixel") return LightPlace::pixel;
+    scene.warnings.push_back(
+        fmt::format("Material '{}': the extra 'light' is left out. Set it to flat, vertex or pixel, or remove it", name));
+    return LightPlace::by_bake;
+}
+
 /// KHR_materials_emissive_strength included. What is unlit shows its colour as it is, and glows no further.
 void read_emission(const tinygltf::Material& from, Material& material, Scene& scene) {
     if (material.unlit || from.emissiveFactor.size() != 3) return;
@@ -187,6 +200,7 @@ std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::
         material.two_sided = from.doubleSided;
         material.unlit = from.extensions.contains("KHR_materials_unlit");
         material.water = water_of(from, material.name, scene);
+        material.light = light_place_of(from, material.name, scene);
         read_emission(from, material, scene);
         scene.materials.push_back(std::move(material));
         uses.push_back(use_of(reference));

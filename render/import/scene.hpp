@@ -18,6 +18,9 @@ namespace surefoot::importer {
 using Index = std::uint32_t;
 constexpr Index none = model::none;
 
+/// Where the light of a surface is worked out: as the bake says, once a triangle, at the vertices, or for each pixel.
+enum class LightPlace : std::uint8_t { by_bake, flat, vertex, pixel };
+
 /// A material of the scene.
 struct Material {
     std::string name;
@@ -28,6 +31,7 @@ struct Material {
     bool two_sided = false;
     bool unlit = false;
     std::optional<bool> water = {};  ///< as its file says
+    LightPlace light = LightPlace::by_bake;
     vec3 emission{0};             ///< linear RGB of the light that it sends out by itself; finite, 0 or more, strength included
     bool emission_image = false;  ///< the file spreads its glow by an image, which is not used: emission is 0
     std::vector<std::string> lacks = {};  ///< missing things that the file asks for: images, the material itself

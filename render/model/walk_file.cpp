@@ -117,9 +117,9 @@ std::vector<EffectFinding> looked_for(const Model& m) {
     std::copy_if(m.effects.begin(), m.effects.end(), std::back_inserter(out),
                  [](const EffectFinding& f) { return f.looked_for; });
     // Files without the newer effects are as before there were any, and earlier programs open them. Where something moves, the
-    // file is new anyway, and says why it has no shadow.
-    if (!m.motions.empty()) return out;
-    while (!out.empty() && out.back().bit > effect_fog && !out.back().called_for) out.pop_back();
+    // file says why it has no shadow.
+    const std::uint32_t last_kept = m.motions.empty() ? effect_fog : effect_moving_shadow;
+    while (!out.empty() && out.back().bit > last_kept && !out.back().called_for) out.pop_back();
     return out;
 }
 

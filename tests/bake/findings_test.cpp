@@ -1,6 +1,9 @@
 // The findings of a bake: what a scene calls for, by how many triangles, and why.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "render/bake/bake.hpp"
 #include "render/bake/materials.hpp"
 #include "tests/bake/scenes.hpp"
@@ -109,11 +112,47 @@ TEST(Findings, OfWaterGoByExtrasAndByNamesWhereTheseAreAsked) {
     scene.materials[2].water = true;
     for (const bool by_name : {false, true}) {
         model::Model model;
-        bake::add_materials(scene, model, by_name);
+        bake::add_materials(scene, model, {.water_by_name = by_name});
         EXPECT_EQ((model.materials[0].effects & model::effect_water) != 0, by_name);
         EXPECT_EQ(model.materials[1].effects & model::effect_water, 0U);
         EXPECT_NE(model.materials[2].effects & model::effect_water, 0U);
     }
+}
+
+TEST(Findings, OfLightByThePixelGoByExtrasAndByTheBakeWhereTheseSayNothing) {
+    using importer::LightPlace;
+    importer::Scene scene;
+    for (const LightPlace light :
+         {LightPlace::by_bake, LightPlace::flat, LightPlace::vertex, LightPlace::pixel, LightPlace::pixel}) {
+        scene.materials.emplace_back();
+        scene.materials.back().light = light;
+    }
+    scene.materials.back().unlit = true;
+    const auto finding_of = [](const std::vector<model::EffectFinding>& findings) {
+        const auto found = std::ranges::find(findings, model::effect_light_by_pixel + 0U, &model::EffectFinding::bit);
+        return found != findings.end() ? *found : model::EffectFinding{};
+    };
+    for (const bool all : {false, true}) {
+        model::Model model;
+        const model::Index proxy = bake::add_materials(scene, model, {.light_by_pixel = all});
+        const auto by_pixel = [&](model::Index m) { return (model.materials[m].effects & model::effect_light_by_pixel) != 0; };
+        EXPECT_EQ(by_pixel(0), all);
+        EXPECT_FALSE(by_pixel(1)) << "flat: all its pixels have the same normal";
+        EXPECT_FALSE(by_pixel(2));
+        EXPECT_TRUE(by_pixel(3));
+        EXPECT_FALSE(by_pixel(4)) << "unlit";
+        EXPECT_FALSE(by_pixel(proxy)) << "coarse forms of several materials";
+        const model::EffectFinding found = finding_of(bake::find_effects(model, {1, 1, 1, 1, 1}));
+        EXPECT_TRUE(found.called_for);
+        EXPECT_EQ(found.reason, all ? "2 of 5 materials are lit by the pixel" : "1 of 5 materials are lit by the pixel");
+        EXPECT_EQ(found.triangles, all ? 2U : 1U);
+    }
+    scene.materials.resize(3);
+    model::Model model;
+    bake::add_materials(scene, model);
+    const model::EffectFinding none = finding_of(bake::find_effects(model, {1, 1, 1}));
+    EXPECT_FALSE(none.called_for);
+    EXPECT_NE(none.reason.find("by its extras or by bake --light-by-pixel"), std::string::npos) << none.reason;
 }
 
 }  // namespace

@@ -48,6 +48,7 @@ importer::Scene rich_yard() {
     scene.materials[2].alpha = model::AlphaMode::blend;
     scene.materials[2].colour[3] = 0.5F;
     scene.materials[3].water = true;
+    scene.materials[1].light = importer::LightPlace::pixel;
     for (std::uint32_t m = 1; m < 4; ++m) {
         importer::Primitive ball = bake::ball(6, 0.6F);
         ball.material = m;
@@ -137,6 +138,25 @@ TEST(ScenesPay, ForOneEffectWithItsUniformsAlone) {
     EXPECT_EQ(made.uniforms, (std::set<std::string>{"view_projection", "fog_colour", "fog_density"}));
     EXPECT_EQ(made.buffers, 2);
     EXPECT_EQ(made.blended_passes, 0);
+}
+
+// Its own text in the program, and no more: no step of the bake, no array, no uniform, no other program.
+TEST(ScenesPay, ForLightByThePixelWithTextAlone) {
+    importer::Scene scene = bare_yard();
+    scene.materials[0].unlit = false;
+    const Made at_vertices = make(scene);
+    scene.materials[0].light = importer::LightPlace::pixel;
+    const Made by_pixel = make(scene);
+    EXPECT_EQ(at_vertices.called_for & model::effect_light_by_pixel, 0U);
+    EXPECT_EQ(by_pixel.called_for, at_vertices.called_for | model::effect_light_by_pixel);
+    EXPECT_EQ(by_pixel.stages, at_vertices.stages);
+    EXPECT_EQ(by_pixel.light_bytes, at_vertices.light_bytes);
+    EXPECT_EQ(by_pixel.uniforms, at_vertices.uniforms);
+    EXPECT_EQ(by_pixel.buffers, at_vertices.buffers);
+    EXPECT_EQ(by_pixel.textures, at_vertices.textures);
+    EXPECT_GE(at_vertices.programs, 1);
+    EXPECT_EQ(by_pixel.programs, at_vertices.programs);
+    EXPECT_EQ(by_pixel.blended_passes, 0);
 }
 
 TEST(ScenesPay, ForAllWhereAllAreCalledFor) {

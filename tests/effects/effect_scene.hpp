@@ -74,14 +74,14 @@ struct EffectScene {
         constexpr EffectMask lit = effect_sun | effect_openness;
         constexpr std::array<EffectMask, objects> own{
             effect_texture | lit | effect_shadow | effect_fog | effect_water,
-            effect_vertex_colour | lit | effect_fog,
+            effect_vertex_colour | lit | effect_fog | effect_light_by_pixel,
             effect_texture | effect_vertex_colour | effect_sun | effect_shadow,
             lit | effect_lamps,
-            effect_texture | lit | effect_shadow | effect_lamps | effect_fog,
+            effect_texture | lit | effect_shadow | effect_lamps | effect_fog | effect_light_by_pixel,
             effect_texture | effect_alpha_mask | lit | effect_lamps,
             effect_blend | effect_fog,
             effect_texture | effect_blend | effect_sun | effect_shadow,
-            effect_vertex_colour | lit | effect_shadow | effect_lamps,
+            effect_vertex_colour | lit | effect_shadow | effect_lamps | effect_light_by_pixel,
             effect_texture,
         };
         return own[i];

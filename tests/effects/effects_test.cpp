@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/effects/effects.hpp"
@@ -18,13 +19,49 @@ TEST(Programs, hold_the_code_of_their_effects_and_of_no_other) {
     for (model::EffectMask mask = 0; mask < 1U << model::effect_count; ++mask) {
         const std::string text = text_of(mask);
         for (const auto& module : effects::all_effects()) {
-            for (const auto piece :
-                 {module.vertex_declarations, module.vertex_code, module.fragment_declarations, module.fragment_code}) {
+            for (const auto piece : {module.vertex_declarations, module.vertex_code, module.fragment_declarations,
+                                     module.fragment_code, module.light_declarations, module.light_code}) {
                 if (piece.empty()) continue;
                 EXPECT_EQ(text.find(piece) != std::string::npos, (mask & module.bit) != 0) << module.name << " in mask " << mask;
             }
         }
     }
+}
+
+bool holds(const std::string& text, std::string_view piece) { return text.find(piece) != std::string::npos; }
+
+TEST(Programs, have_light_at_the_vertices_or_in_the_pixels_and_never_in_both) {
+    for (model::EffectMask mask = 0; mask < 1U << model::effect_count; ++mask) {
+        const auto source = effects::assemble_program(mask);
+        const bool by_pixel = (mask & model::effect_light_by_pixel) != 0;
+        bool has_light = (mask & model::effect_moving_shadow) != 0;
+        for (const auto& module : effects::all_effects()) {
+            if ((mask & module.bit) == 0 || !module.is_light()) continue;
+            has_light = true;
+            EXPECT_EQ(holds(source.vertex, module.light_code), !by_pixel) << module.name << " in mask " << mask;
+            EXPECT_EQ(holds(source.fragment, module.light_code), by_pixel) << module.name << " in mask " << mask;
+            for (const auto& [type, name] : module.light_inputs) {
+                const std::string input = std::string(type) + " " + std::string(name) + ";\n";
+                EXPECT_TRUE(holds(source.vertex, "in " + input)) << mask;
+            }
+            if (source.fragment_samples.empty()) continue;
+            EXPECT_EQ(holds(source.fragment_samples, module.light_code), by_pixel) << module.name << " in mask " << mask;
+        }
+        EXPECT_EQ(holds(source.fragment, "v_normal"), by_pixel && has_light) << mask;
+        EXPECT_EQ(holds(source.vertex, "v_normal"), by_pixel && has_light) << mask;
+        if (!by_pixel || has_light) continue;
+        const auto without = effects::assemble_program(mask & ~model::effect_light_by_pixel);
+        EXPECT_EQ(source.vertex, without.vertex) << "nothing is lit in mask " << mask;
+        EXPECT_EQ(source.fragment, without.fragment) << mask;
+    }
+}
+
+TEST(Programs, of_light_by_the_pixel_interpolate_no_colour_that_is_the_materials) {
+    using namespace model;
+    const auto fragment = [](EffectMask mask) { return effects::assemble_program(mask).fragment; };
+    EXPECT_TRUE(holds(fragment(effect_sun), "\nin vec4 v_colour"));
+    EXPECT_TRUE(holds(fragment(effect_sun | effect_light_by_pixel), "flat in vec4 v_colour"));
+    EXPECT_TRUE(holds(fragment(effect_sun | effect_vertex_colour | effect_light_by_pixel), "\nin vec4 v_colour"));
 }
 
 TEST(Programs, of_an_alpha_test_cover_part_of_a_pixel_where_pixels_have_several_samples) {

@@ -1,10 +1,11 @@
 // A program for callgrind: draws frames of one small scene on software GL, rasterised in this thread, and prints nothing else.
-// frame_instructions bare|plain|sun|shadow|moving FRAMES: `plain` has no effects and Surefoot's programs; `bare` the same scene
-// with a program written here by hand, with nothing in it that an effect could have left behind; `sun` calls for an effect, to
-// show that one costs; `shadow` for baked shadows too; in `moving` its 48 balls stand on six motions, each carried by another
-// one. Three frames warm up what is compiled late; then FRAMES run inside surefoot_counted_frame, which callgrind counts alone.
-// It is told when they begin, where valgrind's header was there: counting what comes before takes ten times as long as running
-// it.
+// frame_instructions bare|plain|sun|pixel|shadow|moving FRAMES: `plain` has no effects and Surefoot's programs; `bare` the same
+// scene with a program written here by hand, with nothing in it that an effect could have left behind; `sun` calls for an effect,
+// to show that one costs; `pixel` has it by the pixel; `shadow` calls for baked shadows too; in `moving` its 48 balls stand on
+// six motions, each carried by another one. Three frames warm up what is compiled late; then FRAMES run inside
+// surefoot_counted_frame, which callgrind counts alone. It is told when they begin, where valgrind's header was there: counting
+// what comes before takes ten times as long as running it.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -104,6 +105,7 @@ model::Model scene(model::EffectMask effects, bool moves) {
 
 model::EffectMask effects_of(std::string_view what) {
     if (what == "sun") return model::effect_sun;
+    if (what == "pixel") return model::effect_sun | model::effect_light_by_pixel;
     return what == "shadow" ? model::effect_sun | model::effect_shadow : model::EffectMask{0};
 }
 
@@ -170,8 +172,9 @@ int run(std::string_view what, int frames) {
 int main(int argc, char** argv) {
     const std::string_view what = argc == 3 ? argv[1] : "";
     const int frames = argc == 3 ? std::atoi(argv[2]) : 0;
-    if ((what != "bare" && what != "plain" && what != "sun" && what != "shadow" && what != "moving") || frames < 1) {
-        std::fprintf(stderr, "frame_instructions bare|plain|sun|shadow|moving FRAMES\n");
+    constexpr std::array<std::string_view, 6> known{"bare", "plain", "sun", "pixel", "shadow", "moving"};
+    if (std::find(known.begin(), known.end(), what) == known.end() || frames < 1) {
+        std::fprintf(stderr, "frame_instructions bare|plain|sun|pixel|shadow|moving FRAMES\n");
         return 2;
     }
     return run(what, frames);

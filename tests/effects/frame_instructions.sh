@@ -21,18 +21,20 @@ counted() { # KIND: instructions of FRAMES frames; what it prints goes to $work/
   echo "$count"
 }
 declare -A frame
-for kind in bare plain sun shadow moving; do
+for kind in bare plain sun pixel shadow moving; do
   n=$(counted "$kind")
   frame[$kind]=$((n / frames))
 done
 [[ ${frame[bare]} -gt 1000000 ]] || { echo "nothing was counted: ${frame[bare]} instructions a frame" >&2; exit 1; }
 picture() { cut -d' ' -f1 "$work/$1"; }
 ratio() { awk "BEGIN { printf \"%.4f\", ${frame[$1]} / ${frame[bare]} }"; }
-printf '{"instructions_per_frame": {"bare": %d, "plain": %d, "sun": %d, "shadow": %d, "moving": %d}, "plain_over_bare": %s, "sun_over_bare": %s, "shadow_over_sun": %s}\n' \
-  "${frame[bare]}" "${frame[plain]}" "${frame[sun]}" "${frame[shadow]}" "${frame[moving]}" "$(ratio plain)" "$(ratio sun)" \
+printf '{"instructions_per_frame": {"bare": %d, "plain": %d, "sun": %d, "pixel": %d, "shadow": %d, "moving": %d}, "plain_over_bare": %s, "sun_over_bare": %s, "pixel_over_sun": %s, "shadow_over_sun": %s}\n' \
+  "${frame[bare]}" "${frame[plain]}" "${frame[sun]}" "${frame[pixel]}" "${frame[shadow]}" "${frame[moving]}" "$(ratio plain)" "$(ratio sun)" \
+  "$(awk "BEGIN { printf \"%.4f\", ${frame[pixel]} / ${frame[sun]} }")" \
   "$(awk "BEGIN { printf \"%.4f\", ${frame[shadow]} / ${frame[sun]} }")"
 [[ $(picture bare) == $(picture plain) ]] || { echo "the two programs draw different pictures" >&2; exit 1; }
 [[ $(picture sun) != $(picture plain) ]] || { echo "the sun changes nothing: the scene shows nothing" >&2; exit 1; }
+[[ $(picture pixel) != $(picture sun) ]] || { echo "light by the pixel changes nothing" >&2; exit 1; }
 [[ $(picture shadow) != $(picture sun) ]] || { echo "the shadows change nothing" >&2; exit 1; }
 [[ $(picture moving) != $(picture plain) ]] || { echo "nothing moves" >&2; exit 1; }
 awk "BEGIN { exit !(${frame[shadow]} > ${frame[sun]} && ${frame[shadow]} <= 1.02 * ${frame[sun]}) }" || { echo "shadows cost nothing, or more than 2 %" >&2; exit 1; }

@@ -47,6 +47,7 @@ constexpr std::array<Tolerance, model::effect_count> tolerances{{
     {model::effect_fog, 1.5},
     {model::effect_water, 1.5},
     {model::effect_moving_shadow, 1.5},  // as the sun; without a map it is no shadow (moving_shadow_test.cpp has one)
+    {model::effect_light_by_pixel, 1.5},
 }};
 /// Pixels at edges that may differ. Corners are rounded to a part of a pixel, and a driver may take one mip level for 2 x 2
 /// pixels.

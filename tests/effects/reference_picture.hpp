@@ -22,7 +22,7 @@ struct Picture {
     std::vector<dvec3> colours;       ///< 0..1
     std::vector<double> nearness;     ///< 1 / depth of what is opaque; 0 where there is nothing
     std::vector<std::uint64_t> seen;  ///< a number for what a pixel shows: surface and mip level, with what is blended over it
-    std::vector<bool> close_call;     ///< a mask's hole may begin here or beside it
+    std::vector<bool> close_call;     ///< a mask's hole, or the other side of a sheet, may begin here or beside it
 
     /// Whether the 3 x 3 pixels about one do not all show the same, or it is not sure what this one shows.
     [[nodiscard]] bool is_edge(std::uint32_t x, std::uint32_t y) const {
@@ -43,8 +43,19 @@ struct ScreenCorner {
     Corner corner;
 };
 
-inline Corner operator*(double share, const Corner& c) { return {share * c.from_eye, share * c.colour, share * c.uv}; }
-inline Corner operator+(const Corner& a, const Corner& b) { return {a.from_eye + b.from_eye, a.colour + b.colour, a.uv + b.uv}; }
+inline Surface operator*(double share, const Surface& s) {
+    return {share * s.normal, share * s.hidden, share * s.sun, share * s.lamps_before, share * s.lamps_behind};
+}
+inline Surface operator+(const Surface& a, const Surface& b) {
+    return {a.normal + b.normal, a.hidden + b.hidden, a.sun + b.sun, a.lamps_before + b.lamps_before,
+            a.lamps_behind + b.lamps_behind};
+}
+inline Corner operator*(double share, const Corner& c) {
+    return {share * c.from_eye, share * c.colour, share * c.uv, share * c.surface};
+}
+inline Corner operator+(const Corner& a, const Corner& b) {
+    return {a.from_eye + b.from_eye, a.colour + b.colour, a.uv + b.uv, a.surface + b.surface};
+}
 
 /// What of a triangle lies beyond the near plane. It always cuts from the kept corner to the lost one: neighbours get the same
 /// points.
@@ -108,6 +119,17 @@ struct ScreenTriangle {
         out.corner = (1.0 / out.nearness) * out.corner;
         return out;
     }
+    [[nodiscard]] dvec2 uv_at(const dvec2& p) const {
+        dvec2 uv(0.0);
+        double nearness = 0;
+        const double area = area_of(corners[0].at, corners[1].at, corners[2].at);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double share = area_beside(i, p) / area * corners[i].nearness;
+            nearness += share;
+            uv += share * corners[i].corner.uv;
+        }
+        return (1.0 / nearness) * uv;
+    }
 };
 
 /// A part that is drawn, and its place in the order of blended parts.
@@ -134,10 +156,12 @@ inline void fill(Picture& picture, const View& view, const model::Material& mate
         for (std::uint32_t x = pixel(low.x, picture.width); x < pixel(high.x + 1, picture.width); ++x) {
             const dvec2 centre(x + 0.5, y + 0.5), right(0.5, 0), below(0, 0.5);
             if (!triangle.covers(centre)) continue;
-            const auto uv = [&](const dvec2& p) { return triangle.at(p).corner.uv; };
             const ScreenCorner here = triangle.at(centre);
-            const Fragment fragment{here.corner, uv(centre + right) - uv(centre - right),
-                                    uv(centre + below) - uv(centre - below)};
+            Fragment fragment{here.corner};
+            if (has(material, model::effect_texture)) {
+                fragment.uv_right = triangle.uv_at(centre + right) - triangle.uv_at(centre - right);
+                fragment.uv_below = triangle.uv_at(centre + below) - triangle.uv_at(centre - below);
+            }
             const Shade shade = colour_at_pixel(view, material, fragment);
             const std::size_t at = std::size_t{y} * picture.width + x;
             if (shade.is_close_call) picture.close_call[at] = true;

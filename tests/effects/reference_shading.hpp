@@ -46,14 +46,23 @@ struct View {
     [[nodiscard]] dvec3 behind() const { return sky * light.background; }  ///< the colour behind everything
 };
 
+/// What the light of a surface goes by, for both of its sides.
+struct Surface {
+    dvec3 normal{0.0};                           ///< world, of the side before it; unit at vertices
+    dvec4 hidden{0.0};                           ///< shares: sky before and behind it, room before and behind it
+    double sun = 0;                              ///< share of the sun that shines on it
+    dvec3 lamps_before{0.0}, lamps_behind{0.0};  ///< roots of the light of all lamps
+};
+
 /// What a corner of a triangle hands to its pixels. All of it varies evenly in space, not on the picture.
 struct Corner {
     dvec3 from_eye{0.0};  ///< from the eye to it, along the axes of the world; metres
     dvec4 colour{0.0};
     dvec2 uv{0.0};
+    Surface surface{};  ///< where pixels are lit one by one
 };
 
-/// A vertex from the side that is lit: its normal there, and what is seen from that side.
+/// A point of a surface from the side that is lit: its normal there, and what is seen from that side.
 struct LitSide {
     dvec3 normal{0.0};         ///< unit, world
     double sky = 1, room = 1;  ///< shares that are not hidden
@@ -70,7 +79,7 @@ struct Fragment {
 
 inline bool has(const model::Material& material, model::Effect effect) { return (material.effects & effect) != 0; }
 
-/// The light that multiplies the colour of a vertex. Each effect of light changes what the effects before it leave.
+/// The light that multiplies a colour, of a vertex or a pixel. Each effect of light changes what the effects before it leave.
 inline dvec3 light_at_vertex(const View& view, const model::Material& material, const LitSide& side) {
     const dvec3& n = side.normal;
     dvec3 light(1.0);
@@ -97,26 +106,47 @@ inline double sun_at_vertex(const View& view, std::uint32_t vertex) {
     return (shares[0] + view.light.between * (shares[1] - shares[0])) / 255.0;
 }
 
-/// The light of lamps on one side of a vertex. The model has its root, so that little light has fine steps.
-inline dvec3 lamps_at_vertex(const View& view, std::uint32_t vertex, bool behind) {
+/// Of one side of a vertex. The model has the root of the light, so that little light has fine steps.
+inline dvec3 root_of_lamps(const View& view, std::uint32_t vertex, bool behind) {
     const model::LampLight& stored = view.model.lamp_light[vertex];
     const std::uint8_t* const root = behind ? stored.behind : stored.before;
-    return view.light.lamps * dvec3(root[0] * root[0], root[1] * root[1], root[2] * root[2]) / (255.0 * 255.0);
+    return dvec3(root[0], root[1], root[2]) / 255.0;
 }
 
-/// The lit side of a vertex. A two-sided surface is lit on the side that the eye sees.
-inline LitSide lit_side(const View& view, const model::Material& material, const dmat3& linear, std::uint32_t vertex,
-                        const dvec3& from_eye) {
+/// The light of lamps on one side of a vertex.
+inline dvec3 lamps_at_vertex(const View& view, std::uint32_t vertex, bool behind) {
+    const dvec3 root = root_of_lamps(view, vertex, behind);
+    return view.light.lamps * root * root;
+}
+
+inline Surface surface_at(const View& view, const model::Material& material, const dmat3& linear, std::uint32_t vertex) {
     const model::Vertex& v = view.model.vertices[vertex];
     const dvec3 stored = glm::max(dvec3(v.normal[0], v.normal[1], v.normal[2]) / 127.0, dvec3(-1.0));
+    Surface surface;
+    surface.normal = glm::normalize(glm::transpose(glm::inverse(linear)) * stored);
+    surface.hidden = dvec4(v.hidden[0], v.hidden[1], v.hidden[2], v.hidden[3]) / 255.0;
+    surface.sun = has(material, model::effect_shadow) ? sun_at_vertex(view, vertex) : 1.0;
+    if (!has(material, model::effect_lamps)) return surface;
+    surface.lamps_before = root_of_lamps(view, vertex, false);
+    surface.lamps_behind = root_of_lamps(view, vertex, true);
+    return surface;
+}
+
+/// By how much a point faces away from the eye: -1 straight to it, 1 straight away.
+inline double facing_away(const Surface& surface, const dvec3& from_eye) {
+    return glm::dot(glm::normalize(surface.normal), glm::normalize(from_eye));
+}
+
+/// The lit side of a vertex, or of a point between vertices. A two-sided surface is lit on the side that the eye sees.
+inline LitSide lit_side(const View& view, const model::Material& material, const Surface& surface, const dvec3& from_eye) {
     LitSide side;
-    side.normal = glm::normalize(glm::transpose(glm::inverse(linear)) * stored);
-    const bool behind = material.two_sided && glm::dot(side.normal, from_eye) > 0;
-    if (behind) side.normal = -side.normal;
-    side.sky = 1.0 - v.hidden[behind ? 1 : 0] / 255.0;
-    side.room = 1.0 - v.hidden[behind ? 3 : 2] / 255.0;
-    if (has(material, model::effect_shadow)) side.sun = sun_at_vertex(view, vertex);
-    if (has(material, model::effect_lamps)) side.lamps = lamps_at_vertex(view, vertex, behind);
+    const bool behind = material.two_sided && facing_away(surface, from_eye) > 0;
+    side.normal = (behind ? -1.0 : 1.0) * glm::normalize(surface.normal);
+    side.sky = 1.0 - (behind ? surface.hidden.y : surface.hidden.x);
+    side.room = 1.0 - (behind ? surface.hidden.w : surface.hidden.z);
+    side.sun = surface.sun;
+    const dvec3& root = behind ? surface.lamps_behind : surface.lamps_before;
+    side.lamps = view.light.lamps * root * root;
     return side;
 }
 
@@ -140,7 +170,9 @@ inline Corner corner_at(const View& view, const model::Material& material, const
     corner.colour = material_colour(view, material, captured);
     if (has(material, model::effect_vertex_colour))
         corner.colour *= dvec4(v.colour[0], v.colour[1], v.colour[2], v.colour[3]) / 255.0;
-    const dvec3 light = light_at_vertex(view, material, lit_side(view, material, linear, vertex, corner.from_eye));
+    corner.surface = surface_at(view, material, linear, vertex);
+    if (has(material, model::effect_light_by_pixel)) return corner;
+    const dvec3 light = light_at_vertex(view, material, lit_side(view, material, corner.surface, corner.from_eye));
     corner.colour *= dvec4(light, 1.0);
     return corner;
 }
@@ -215,19 +247,25 @@ inline double brightness_of_water(const View& view, const dvec3& from_eye) {
 struct Shade {
     dvec4 colour{0.0};           ///< 0..1; the fourth number is the opacity
     bool is_hole = false;        ///< nothing is drawn
-    bool is_close_call = false;  ///< whether there is a hole hangs by the rounding of an alpha
+    bool is_close_call = false;  ///< whether there is a hole, or which side is lit, hangs by rounding
 };
 
 /// The colour at a pixel. Each effect of pixels changes what the effects before it leave.
 inline Shade colour_at_pixel(const View& view, const model::Material& material, const Fragment& fragment) {
     Shade shade{fragment.at.colour};
+    if (has(material, model::effect_light_by_pixel)) {
+        const Surface& surface = fragment.at.surface;
+        const LitSide side = lit_side(view, material, surface, fragment.at.from_eye);
+        shade.colour *= dvec4(light_at_vertex(view, material, side), 1.0);
+        shade.is_close_call = material.two_sided && std::abs(facing_away(surface, fragment.at.from_eye)) < 1e-3;
+    }
     if (has(material, model::effect_texture)) {
         const model::Texture& texture = view.model.textures[material.texture];
         shade.colour *= bilinear(view.model, texture, mip_level(texture, fragment), fragment.at.uv);
     }
     if (has(material, model::effect_alpha_mask)) {
         shade.is_hole = shade.colour.a < material.alpha_cutoff;
-        shade.is_close_call = std::abs(shade.colour.a - material.alpha_cutoff) < 2.0 / 255.0;
+        shade.is_close_call |= std::abs(shade.colour.a - material.alpha_cutoff) < 2.0 / 255.0;
     }
     if (!has(material, model::effect_blend)) shade.colour.a = 1;
     if (has(material, model::effect_water))

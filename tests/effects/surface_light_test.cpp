@@ -61,7 +61,7 @@ TEST(SurfaceLight, EqualsTheReferenceByEveryMaskAtEveryHour) {
 
 TEST(SurfaceLight, EachModuleWithLightHasOne) {
     for (const EffectModule& module : all_effects()) {
-        EXPECT_EQ(module.light != nullptr, module.is_light) << module.name;
+        EXPECT_EQ(module.light != nullptr, module.is_light()) << module.name;
         if (module.priced_on == 0) {
             EXPECT_EQ(module.usual_price.effect, 0U) << module.name;
             continue;

@@ -1,8 +1,10 @@
 // clean(): each kind of bad triangle goes with its count, the good ones stay, normals end up unit.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
+#include "render/import/finish.hpp"
 #include "render/import/scene.hpp"
 
 namespace surefoot::importer {
@@ -105,6 +107,28 @@ TEST(Clean, ArraysOfTheWrongLengthAndBadCoordinatesAreMended) {
     ASSERT_EQ(warnings.size(), 2U);
     EXPECT_TRUE(p.colours.empty());
     EXPECT_EQ(p.uvs[1], vec2(0));
+}
+
+TEST(Flat, TrianglesShareNoVertexAndKeepWhatTheirCornersHave) {
+    Primitive p;  // the two sides of a tent share the edge 0-1
+    p.positions = {{0, 1, 0}, {0, 1, 1}, {1, 0, 0}, {-1, 0, 0}};
+    p.uvs = {{0, 0}, {1, 0}, {0, 1}, {0.5F, 0.5F}};
+    p.colours = {{1, 0, 0, 255}, {2, 0, 0, 255}, {3, 0, 0, 255}, {4, 0, 0, 255}};
+    p.indices = {0, 1, 2, 1, 0, 3};
+    const Primitive before = p;
+    EXPECT_TRUE(cleaned(p).empty());
+    EXPECT_NEAR(p.normals[0].y, 1.0F, 1e-6F) << "the mean of both sides: what is smooth";
+    make_flat(p);
+    EXPECT_EQ(p.indices, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
+    ASSERT_EQ(p.positions.size(), 6U);
+    for (std::size_t i = 0; i < 6; ++i) {
+        const std::uint32_t from = before.indices[i];
+        EXPECT_EQ(p.positions[i], before.positions[from]);
+        EXPECT_EQ(p.uvs[i], before.uvs[from]);
+        EXPECT_EQ(p.colours[i], before.colours[from]);
+        EXPECT_NEAR(p.normals[i].x, i < 3 ? std::sqrt(0.5F) : -std::sqrt(0.5F), 1e-6F);
+        EXPECT_NEAR(p.normals[i].y, std::sqrt(0.5F), 1e-6F);
+    }
 }
 
 TEST(Clean, AreaWeighsInSharedNormals) {

@@ -418,5 +418,51 @@ TEST(GltfWater, IsWhatAMaterialsExtraSays) {
     EXPECT_TRUE(warns(wrong, "Material 'pond': the extra 'water' is not true or false"));
 }
 
+TEST(GltfLightPlace, IsWhatAMaterialsExtraSays) {
+    const auto of = [](const std::string& extras) {
+        TriangleGltf gltf;
+        gltf.primitive += R"(,"material":0)";
+        gltf.more = R"(,"materials":[{"name":"column",)" + extras + R"("doubleSided":true}])";
+        return import_good(gltf);
+    };
+    EXPECT_EQ(of(R"("extras":{"light":"pixel"},)").materials[0].light, LightPlace::pixel);
+    EXPECT_EQ(of(R"("extras":{"light":"vertex"},)").materials[0].light, LightPlace::vertex);
+    EXPECT_EQ(of(R"("extras":{"light":"flat"},)").materials[0].light, LightPlace::flat);
+    EXPECT_EQ(of("").materials[0].light, LightPlace::by_bake);
+    EXPECT_TRUE(of(R"("extras":{"light":"flat"},)").warnings.empty());
+    for (const char* wrong : {R"("Pixel")", R"("bright")", "true", "4", R"(["pixel"])"}) {
+        const Scene scene = of(R"("extras":{"light":)" + std::string(wrong) + "},");
+        EXPECT_EQ(scene.materials[0].light, LightPlace::by_bake) << wrong;
+        EXPECT_TRUE(
+            warns(scene, "Material 'column': the extra 'light' is left out. Set it to flat, vertex or pixel, or remove it"))
+            << wrong;
+        EXPECT_TRUE(scene.damage.empty());
+    }
+}
+
+// A tent: both of its sides have the ridge's two vertices.
+TEST(GltfLightPlace, FlatGivesEachTriangleItsOwnNormal) {
+    const auto of = [](const std::string& light) {
+        TriangleGltf gltf;
+        gltf.positions = {0, 1, 0, 0, 1, 1, 1, 0, 0};
+        gltf.primitive += R"(,"material":0)";
+        gltf.attributes += R"(,"NORMAL":2)";
+        gltf.accessors = R"(,{"bufferView":2,"componentType":5126,"count":3,"type":"VEC3"})";
+        gltf.views = R"(,{"buffer":0,"byteOffset":44,"byteLength":36})";
+        put(gltf.bytes, std::vector<float>{0, 1, 0, 0, 1, 0, 0, 1, 0});
+        gltf.more = R"(,"materials":[{"extras":{"light":")" + light + R"("}}])";
+        return import_good(gltf);
+    };
+    const auto heights = [](const Scene& scene) {
+        std::vector<float> out;
+        for (const vec3& n : scene.meshes.at(0).primitives.at(0).normals) out.push_back(n.y);
+        return out;
+    };
+    EXPECT_EQ(heights(of("vertex")), (std::vector<float>{1, 1, 1}));
+    const std::vector<float> flat = heights(of("flat"));
+    ASSERT_EQ(flat.size(), 3U);
+    for (const float y : flat) EXPECT_NEAR(y, std::sqrt(0.5F), 1e-6F);
+}
+
 }  // namespace
 }  // namespace surefoot::importer::test

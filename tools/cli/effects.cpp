@@ -3,6 +3,7 @@
 
 #include "render/effects/effects.hpp"
 #include "render/model/walk_file.hpp"
+#include "tools/accuracy/curved_triangles.hpp"
 #include "tools/accuracy/effect_regions.hpp"
 #include "tools/accuracy/effect_worth.hpp"
 #include "tools/cli/command.hpp"
@@ -105,9 +106,10 @@ int run_effects(const EffectsArguments& a) {
     const report::Columns columns({{"effect", 14}, {"called for", 11}, {"triangles", -12}, {"reason", 0, 2}});
     if (!a.json) fmt::print("{}\n", columns.heading());
     const auto show = [&](std::string_view name, std::string_view what, std::string_view requested_by,
-                          const model::EffectFinding& f) {
+                          const model::EffectFinding& f, const std::string& more = "") {
         // What a file does not say is explained by what would call for it.
-        const std::string reason = f.looked_for ? f.reason : fmt::format("{}; it takes {}", f.reason, requested_by);
+        std::string reason = f.looked_for ? f.reason : fmt::format("{}; it takes {}", f.reason, requested_by);
+        if (!more.empty()) reason += "; " + more;
         if (a.json) {
             list.push_back({{"effect", std::string(name)},
                             {"what", std::string(what)},
@@ -122,7 +124,9 @@ int run_effects(const EffectsArguments& a) {
     };
     for (const effects::EffectModule& effect : effects::all_effects())
         for (const model::EffectFinding& f : m->effects)
-            if (f.bit == effect.bit) show(effect.name, effect.help, effect.requested_by, f);
+            if (f.bit == effect.bit)
+                show(effect.name, effect.help, effect.requested_by, f,
+                     f.bit == model::effect_light_by_pixel ? in_words(accuracy::curved_triangles(*m)) : "");
     show("motion", "nodes move as animations say, and loop; no program of its own", "animated nodes", model::motion_finding(*m));
     const std::vector<accuracy::EffectRegion> regions = accuracy::regions_of(*m);
     if (a.json) {
