@@ -32,7 +32,9 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->options.device.null.costs = &impl->costs;
     impl->options.device.null.enlarge_us = static_cast<double>(costs.enlarge_us(0.5F, options.device.viewport));
     impl->options.device.rest = options.rest_after_ms > 0;
-    impl->options.device.null.rest_pass_us = static_cast<double>(costs.rest_pass_us(options.device.viewport));
+    if (options.device.background && (impl->model.called_for() & model::background_effects) != 0)
+        impl->costs = model::with_background(std::move(impl->costs));
+    impl->options.device.null.rest_pass_us = static_cast<double>(impl->costs.rest_pass_us(options.device.viewport));
     impl->options.resolution = model::stepped(options.resolution);
     if (impl->options.resolution > 0.0F) impl->drawn_resolution = impl->options.resolution;
     impl->options.device.smaller = impl->options.resolution < 1.0F;

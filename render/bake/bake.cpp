@@ -28,6 +28,7 @@
 #include "render/bake/stage.hpp"
 #include "render/bake/tour.hpp"
 #include "render/bake/trim_masks.hpp"
+#include "render/effects/effects.hpp"
 #include "render/model/pixels.hpp"
 
 namespace surefoot::bake {
@@ -405,8 +406,10 @@ void BakeContext::find_effects() {
             material_triangles[part.material] += part.indices.size() / 3;
     }
     keep_used_effects(model, light.openness.copies);
-    model.effects = bake::find_effects(model, material_triangles, light);
+    const effects::SceneFacts facts{scene.sky || options.sky};
+    model.effects = bake::find_effects(model, material_triangles, light, effects::called_for_by(facts));
     add_sun_reason(scene, options.sun, model.effects);
+    add_sky_reason(scene, model.effects);
     add_moving_shadow(model);
 }
 

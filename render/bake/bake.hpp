@@ -27,6 +27,7 @@ struct BakeOptions {
     std::optional<double> fog_visibility_m;        ///< in metres, 0: no fog; none: the scene's
     bool water_by_name = false;                    ///< as is_named_water() says, where a file says nothing
     bool light_by_pixel = false;                   ///< of all lit materials, where a file says nothing
+    bool sky = false;                              ///< behind everything, also where no file names one
     const model::CostModel* costs = nullptr;       ///< calibrated; null: default_costs()
     model::Counts max_counts = model::max_counts;  ///< limits of the model; tests lower them
 };

@@ -326,7 +326,7 @@ void keep_used_effects(model::Model& model, std::span<const std::pair<model::Ind
 }
 
 std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
-                                               const SceneLight& light) {
+                                               const SceneLight& light, model::EffectMask by_scene) {
     std::vector<model::EffectMask> masks;
     for (const model::Material& material : model.materials) masks.push_back(material.effects);
     for (const auto& [copy, original] : light.openness.copies)  // its triangles are the original's
@@ -344,15 +344,22 @@ std::vector<model::EffectFinding> find_effects(const model::Model& model, const 
         // Coarse forms carry their colours in the vertices, and boxes carry pictures: the bake's own forms call too.
         std::uint64_t own = 0;
         for (const model::Representation& rep : model.reps) own += (rep.effects & f.bit) != 0 ? 1 : 0;
-        f.called_for = materials > 0 || own > 0;
-        f.reason = materials > 0 ? fmt::format("{} of {} materials {}", materials, triangles_of_material.size(), module.have)
-                   : own > 0     ? fmt::format("{}; {} baked representations need it", module.missing, own)
-                                 : std::string(module.missing);
+        f.called_for = materials > 0 || own > 0 || (by_scene & f.bit) != 0;
+        f.reason = (by_scene & f.bit) != 0 ? std::string(module.have)
+                   : materials > 0 ? fmt::format("{} of {} materials {}", materials, triangles_of_material.size(), module.have)
+                   : own > 0       ? fmt::format("{}; {} baked representations need it", module.missing, own)
+                                   : std::string(module.missing);
         findings.push_back(std::move(f));
     }
     add_to_findings(light.openness, findings);
     add_to_findings(light.baked, model.light, findings);
     return findings;
+}
+
+void add_sky_reason(const importer::Scene& scene, std::vector<model::EffectFinding>& findings) {
+    for (model::EffectFinding& f : findings)
+        if (f.bit == model::effect_sky && f.called_for)
+            f.reason += scene.sky ? ", as the scene's file says" : ", as bake --sky says";
 }
 
 void add_sun_reason(const importer::Scene& scene, const std::optional<model::SunTime>& time,

@@ -151,6 +151,13 @@ model::EffectMask called_for_by(const MaterialFacts& material) {
     return mask;
 }
 
+model::EffectMask called_for_by(const SceneFacts& scene) {
+    model::EffectMask mask = 0;
+    for (const EffectModule& module : all_effects())
+        if (module.called_for_by_scene != nullptr && module.called_for_by_scene(scene)) mask |= module.bit;
+    return mask;
+}
+
 model::EffectMask moving_effects() {
     model::EffectMask mask = 0;
     for (const EffectModule& module : all_effects())
@@ -172,7 +179,26 @@ std::string effects_text(model::EffectMask mask, std::string_view between) {
     return text.empty() ? "bare" : text;
 }
 
+namespace {
+
+/// The program of an effect that is drawn behind everything.
+gl::ProgramSource background_program(const EffectModule& module) {
+    gl::ProgramSource source;
+    source.name = module.name;
+    source.uniforms.assign(module.uniforms.begin(), module.uniforms.end());
+    source.vertex = "#version 430 core\n" + std::string(module.vertex_declarations) + "void main() {\n" +
+                    std::string(module.vertex_code) + "}\n";
+    source.fragment = "#version 430 core\n" + std::string(module.fragment_declarations) + "out vec4 pixel;\nvoid main() {\n" +
+                      std::string(module.fragment_code) + "    pixel = vec4(colour, 1.0);\n}\n";
+    return source;
+}
+
+}  // namespace
+
 gl::ProgramSource assemble_program(model::EffectMask mask) {
+    for (const EffectModule& module : all_effects())
+        if (mask == module.bit && (mask & model::background_effects) != 0) return background_program(module);
+    mask &= ~model::background_effects;
     const std::vector<const EffectModule*> modules = modules_of(mask);
     const bool by_pixel = (mask & model::effect_light_by_pixel) != 0;
     const LightText light = light_text(modules, by_pixel);

@@ -23,6 +23,11 @@ struct MaterialFacts {
     model::AlphaMode alpha = model::AlphaMode::opaque;
 };
 
+/// What a scene calls for effects by that no material has.
+struct SceneFacts {
+    bool sky = false;
+};
+
 /// The effects of a material, and what all vertices that it is drawn with hold.
 struct MaterialUse {
     model::EffectMask effects = 0;
@@ -45,7 +50,11 @@ struct EffectModule {
     std::string_view not_here = "no material here has it";  ///< why a region of a model that calls for it does not
     /// Whether a material calls for it. Null: a step of the bake measures it and gives it to materials.
     bool (*called_for)(const MaterialFacts& material) = nullptr;
+    /// Of model::background_effects: whether the scene calls for it.
+    bool (*called_for_by_scene)(const SceneFacts& scene) = nullptr;
 
+    // Of model::background_effects, the pieces are a program of their own. It draws three vertices without attributes, which
+    // cover the picture: vertex_code sets gl_Position, fragment_code makes `colour`, a vec3.
     std::string_view vertex_declarations = {}, vertex_code = {};      ///< may read `world_rows`, write `v_colour`
     std::string_view fragment_declarations = {}, fragment_code = {};  ///< may change `colour`, discard
     /// In place of fragment_code where pixels have several samples; sets `opacity` to the covered share. Empty: fragment_code.
@@ -62,7 +71,8 @@ struct EffectModule {
     bool needs_sunless = false;
     int order = 0;  ///< of application; effects of the same order go by bit
 
-    /// Its cost adds to that of a state class, and calibration measures it on this one. 0: grids of state classes hold its cost.
+    /// Its cost adds to that of a state class, and calibration measures it on this one. 0: grids of state classes hold its cost,
+    /// or CostModel::background_ns_per_pixel.
     model::EffectMask priced_on = 0;
     /// Until it is measured: as on llvmpipe with two cores. `effect` is `bit` or, without a price, 0.
     model::EffectPrice usual_price = {};
@@ -80,6 +90,8 @@ struct EffectModule {
 std::span<const EffectModule> all_effects();
 /// What a material calls for by itself.
 model::EffectMask called_for_by(const MaterialFacts& material);
+/// What a scene calls for that no material has.
+model::EffectMask called_for_by(const SceneFacts& scene);
 /// The effects whose pictures change with the time.
 model::EffectMask moving_effects();
 /// Whether any effect of the mask hides by depth.
@@ -89,7 +101,8 @@ std::vector<model::EffectPrice> usual_prices();
 /// "texture sun", or "bare".
 std::string effects_text(model::EffectMask mask, std::string_view between = " ");
 
-/// The program of one state class: the bare pipeline and the modules of its bits, nothing else.
+/// The program of one state class: the bare pipeline and the modules of its bits, nothing else. Of one background effect alone:
+/// its own program. With others it adds nothing, as no material has it.
 gl::ProgramSource assemble_program(model::EffectMask mask);
 
 }  // namespace surefoot::effects

@@ -11,6 +11,7 @@ constexpr EffectModule light_by_pixel{
     .requested_by = "extras.light of a glTF material with the value pixel, or bake --light-by-pixel",
     .have = "are lit by the pixel",
     .missing = "no lit material is to be lit by the pixel, by its extras or by bake --light-by-pixel",
+    .not_here = "no material here is lit by the pixel",
     .called_for = [](const MaterialFacts& material) { return material.lit && material.light_by_pixel; },
     .priced_on = model::effect_texture | model::effect_sun,
     .usual_price = {model::effect_light_by_pixel, 0, 0, 4.0F},

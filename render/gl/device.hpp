@@ -59,6 +59,7 @@ struct PictureMoment {
     dvec3 eye{0.0};         ///< in the world, m
     float pixel_rad = 0;    ///< angle of a pixel in the middle
     ShadowPlace shadow = {};
+    mat4 to_direction{1.0F};  ///< from -1..1, -1..1, 1, 1 of the picture to a direction in the world; for what is behind all
 };
 
 /// A uniform of a program: its GLSL name, of `float`, `vec3` or `mat4`, and what writes its 1, 3 or 16 floats. On the frame
@@ -138,6 +139,8 @@ struct DeviceOptions {
     /// Groups of effects that hide_effects() leaves out; at most max_switches. load() compiles programs without each union of
     /// them.
     std::vector<model::EffectMask> switches;
+    /// Pictures have what the model calls for behind everything (model::background_effects). It may be among the switches.
+    bool background = true;
     bool second_filter = false;  ///< prepares set_filter(), where `filter` is automatic and the driver is software
 };
 

@@ -119,6 +119,17 @@ std::vector<model::EffectMask> GlDevice::find_programs() {
     return masks;
 }
 
+Result<void> GlDevice::load_background(const model::Model& model, const ProgramFactory& programs) {
+    delete_program(gl_, background_);
+    background_ = {};
+    const model::EffectMask mask = options_.background ? model.called_for() & model::background_effects : 0;
+    if (mask == 0) return {};
+    auto program = make_program(gl_, mask, programs(mask), false, geometry());
+    if (!program) return program.error();
+    background_ = std::move(*program);
+    return {};
+}
+
 Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& programs) {
     free_resources(gl_, resources_);
     tables_ = draw::make_tables(model);
@@ -127,6 +138,7 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     if (!resources) return resources.error();
     resources_ = std::move(*resources);
     if (auto shadow = load_shadow(model, programs); !shadow) return shadow.error();
+    if (auto behind = load_background(model, programs); !behind) return behind.error();
     set_filter_ = filter();
     detail_step_ = 0;
     light_ = model::daylight_of_model(model.sun_direction, model.light);
@@ -237,6 +249,7 @@ std::vector<std::string> GlDevice::program_listing() const {
     for (const Program& program : resources_.programs) {
         lines.push_back(std::to_string(program.mask) + ": " + program.source.name);
     }
+    if (background_.id != 0) lines.push_back(std::to_string(background_.mask) + ": " + background_.source.name);
     return lines;
 }
 
@@ -244,6 +257,7 @@ std::string GlDevice::program_text(model::EffectMask mask) const {
     for (const Program& program : resources_.programs) {
         if (program.mask == mask) return program.source.vertex + program.source.fragment;
     }
+    if (background_.id != 0 && background_.mask == mask) return background_.source.vertex + background_.source.fragment;
     return {};
 }
 

@@ -105,6 +105,8 @@ private:
     void enlarge_by_processor() REQUIRES(draws);
     void set_coverage(bool on) REQUIRES(draws);
     void clear_target() REQUIRES(draws);
+    Result<void> load_background(const model::Model& model, const ProgramFactory& programs) REQUIRES(draws);
+    void draw_background() REQUIRES(draws);
     void draw_parts(std::span<const DrawItem> items, Parts parts) REQUIRES(draws);
     void look_for_reset() REQUIRES(draws);
     void prepare_presenting() REQUIRES(draws);
@@ -155,6 +157,7 @@ private:
     draw::DrawTables tables_;
     rt::TextureFilter set_filter_ GUARDED_BY(draws) = rt::TextureFilter::bilinear;  ///< in the parameters of all textures
 
+    Program background_;                                    ///< id 0: nothing but a colour is behind everything
     model::EffectMask off_ GUARDED_BY(draws) = 0;           ///< effects that are left out
     std::size_t variant_ GUARDED_BY(draws) = 0;             ///< bit i: group i of the switches is left out
     std::vector<std::uint16_t> without_ GUARDED_BY(draws);  ///< programs, by variant, then by program of a part

@@ -68,6 +68,7 @@ void GlDevice::start_picture(const Pose& pose) {
     state_known_ = false;
     shown_ = {light_, time_s_, pose.position, static_cast<float>(model::pixel_angle(pose, options_.viewport))};
     shown_.light.background *= vec3(options_.sky[0], options_.sky[1], options_.sky[2]);
+    if ((off_ & model::effect_fog) != 0) shown_.light.fog_density = 0;  // nor has what is behind everything any
     poses_.set_time(time_s_);
     if (!casters_.empty()) draw_shadow_map();
     if (shadow_.framebuffer != 0) place_shadow();
@@ -89,6 +90,22 @@ void GlDevice::clear_target() {
     gl_.ClearColor(behind.r, behind.g, behind.b, 1.0F);
     gl_.ClearDepthf(0.0F);
     gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    draw_background();
+}
+
+/// On the cleared target, before all else. Where depth is not tested, none is written.
+void GlDevice::draw_background() {
+    if (background_.id == 0 || (off_ & background_.mask) != 0) return;
+    shown_.to_direction = mat4(glm::inverse(dmat4(view_projection_)));  // a picture at rest has moved it by parts of a pixel
+    gl_.UseProgram(background_.id);
+    gl_.BindVertexArray(background_.vertex_array);
+    write_uniforms(gl_, background_, shown_);
+    if (samples_.samples > 1) set_coverage(false);
+    gl_.Disable(GL_CULL_FACE);
+    gl_.Disable(GL_DEPTH_TEST);
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl_.Enable(GL_DEPTH_TEST);
+    state_known_ = false;
 }
 
 void GlDevice::set_blending(bool on) {

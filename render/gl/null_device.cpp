@@ -127,6 +127,8 @@ Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& p
         return Error{"cost table", "The table holds no state class", "Run `surefoot calibrate`", ErrorKind::damaged};
     programs_.clear();
     for (const model::EffectMask mask : draw::make_tables(model).masks) programs_.push_back({mask, programs(mask)});
+    const model::EffectMask behind = options_.background ? model.called_for() & model::background_effects : 0;
+    if (behind != 0) programs_.push_back({behind, programs(behind)});
     model_ = &model;
     item_costs_.emplace(model, costs_);
     moving_ = model::MovingNodes(model);

@@ -233,6 +233,16 @@ void read_fog(const tinygltf::Scene& from, Scene& scene) {
         scene.warnings.push_back("Scene: the extra 'fog_visibility_m' is no number of 0 to 1e7 metres; there is no fog");
 }
 
+/// Extra `sky` of the scene.
+void read_sky(const tinygltf::Scene& from, Scene& scene) {
+    if (!from.extras.IsObject() || !from.extras.Has("sky")) return;
+    const tinygltf::Value& value = from.extras.Get("sky");
+    if (value.IsBool())
+        scene.sky = value.Get<bool>();
+    else
+        scene.warnings.push_back("Scene: the extra 'sky' is not true or false; there is no sky");
+}
+
 std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {
     if (model.scenes.empty()) return nodes_without_parent(model);
     const int wanted = model.defaultScene;
@@ -243,6 +253,7 @@ std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {
         scene.warnings.push_back(fmt::format("The file has {} scenes; only one is taken", model.scenes.size()));
     const tinygltf::Scene& taken = model.scenes[exists ? static_cast<std::size_t>(wanted) : 0];
     read_fog(taken, scene);
+    read_sky(taken, scene);
     return taken.nodes;
 }
 

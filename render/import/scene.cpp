@@ -100,6 +100,7 @@ void append(Scene& to, Scene&& from) {
     if (from.sun && (!to.sun || from.sun->intensity > to.sun->intensity)) to.sun = std::move(from.sun);
     if (from.fog_visibility_m > 0 && !(to.fog_visibility_m > 0 && to.fog_visibility_m < from.fog_visibility_m))
         to.fog_visibility_m = from.fog_visibility_m;
+    to.sky = to.sky || from.sky;
     move_all(to.lamps, from.lamps);
     keep_brightest(to);
     move_all(to.sources, from.sources);

@@ -112,6 +112,7 @@ struct Scene {
     std::vector<StandIn> stand_ins;
     std::optional<Sun> sun;              ///< the brightest one
     double fog_visibility_m = 0;         ///< extras.fog_visibility_m of the glTF scene; 0: no fog
+    bool sky = false;                    ///< extras.sky of the glTF scene: there is a sky behind everything
     std::vector<Lamp> lamps;             ///< the brightest max_lamps, in the file's order
     std::vector<model::Motion> motions;  ///< from where nodes stand at rest; outer ones come first
     std::vector<model::MotionKey> motion_keys;
@@ -123,7 +124,7 @@ struct Scene {
 };
 
 /// Adds all of one scene to another. Of more than max_lamps lamps the brightest stay; a warning counts the others. Of two suns
-/// the brighter one stays, and of two fogs the thicker one. Of too many motions the first ones stay.
+/// the brighter one stays, and of two fogs the thicker one. A sky is there for both. Of too many motions the first ones stay.
 void append(Scene& to, Scene&& from);
 
 /// By ending (formats.hpp), with the stand-ins listed beside each file (stand_ins.hpp). Several files become one scene.

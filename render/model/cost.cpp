@@ -107,6 +107,12 @@ CostModel at_quality(CostModel costs, const Quality& quality) {
     return costs;
 }
 
+CostModel with_background(CostModel costs) {
+    costs.drawn_pass_ns_per_pixel += costs.background_ns_per_pixel;
+    costs.rest_pass_ns_per_pixel += costs.background_ns_per_pixel;
+    return costs;
+}
+
 CostModel default_costs() {
     // Orders of magnitude of llvmpipe on two cores at 1280x720; `surefoot calibrate` replaces them.
     constexpr std::array<ClassFigures, 12> classes = {{

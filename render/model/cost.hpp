@@ -75,9 +75,11 @@ struct CostModel {
     float sample_share = 0.77F;
     float sample_pass_ns_per_pixel = 2.5F;  ///< of what is drawn: to clear and resolve each sample beyond the first
     float trilinear_factor = 1.24F;         ///< raster time of textured items, against bilinear
-    /// Of the picture as it is drawn, in every frame: at_quality() finds it from the samples. No file holds it.
+    /// Of the picture as it is drawn, in every frame: with_background() and at_quality() find it. No file holds it.
     float drawn_pass_ns_per_pixel = 0;
     float rest_pass_ns_per_pixel = 8;  ///< of one pass over the picture at rest; typical, no calibration measures it
+    /// Of what is behind everything (background_effects), in models that call for it; typical, no calibration measures it.
+    float background_ns_per_pixel = 2.5F;
     /// Six times the mean squared error (0..1) of full detail that is enlarged. Typical of five scenes; a fit measures its model.
     BlurLoss blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
     rt::TextureFilter filter = rt::TextureFilter::automatic;  ///< that it was measured by; automatic: as the device chooses
@@ -114,6 +116,9 @@ struct Quality {
 
 /// The costs of frames that are drawn so. A table is measured with one sample a pixel.
 CostModel at_quality(CostModel costs, const Quality& quality);
+
+/// The costs of pictures that have something behind everything.
+CostModel with_background(CostModel costs);
 
 /// Conservative costs for an uncalibrated machine (llvmpipe on two cores).
 CostModel default_costs();

@@ -48,6 +48,7 @@ Check check_materials(const Model& m) {
         if (!std::isfinite(material.alpha_cutoff)) return wrong("materials", i, "The alpha cutoff is not finite");
         if (material.alpha > AlphaMode::blend) return wrong("materials", i, "The alpha mode is unknown");
         if ((material.effects >> effect_count) != 0) return wrong("materials", i, "An effect is unknown");
+        if ((material.effects & background_effects) != 0) return wrong("materials", i, "An effect is of no material");
         if (material.texture != none && material.texture >= m.textures.size())
             return wrong("materials", i, "The texture is out of range");
         if (material.texture == none && (material.effects & effect_texture) != 0)

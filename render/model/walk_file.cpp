@@ -118,8 +118,8 @@ std::vector<EffectFinding> looked_for(const Model& m) {
                  [](const EffectFinding& f) { return f.looked_for; });
     // Files without the newer effects are as before there were any, and earlier programs open them. Where something moves, the
     // file says why it has no shadow.
-    const std::uint32_t last_kept = m.motions.empty() ? effect_fog : effect_moving_shadow;
-    while (!out.empty() && out.back().bit > last_kept && !out.back().called_for) out.pop_back();
+    const std::uint32_t always = m.motions.empty() ? effect_fog : effect_moving_shadow;
+    while (!out.empty() && out.back().bit > always && !out.back().called_for) out.pop_back();
     return out;
 }
 

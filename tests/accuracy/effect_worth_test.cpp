@@ -117,6 +117,41 @@ TEST(EffectWorth, AllOnShowsTheSamePictureByFewerPrograms) {
     EXPECT_NE(page.find("coarse forms alone"), std::string::npos);
 }
 
+TEST(EffectWorth, ASkyIsShownInEveryPictureAndNoItemHasIt) {
+    const test::TemporaryFolder folder;
+    PlacesRequest request = of_the_forest();
+    request.model_file = folder / "sky.walk";
+    request.path_file = folder / "sky.csv";
+    test::EffectScene scene;
+    scene.model.effects.back().called_for = true;
+    ASSERT_EQ(scene.model.effects.back().bit, model::effect_sky);
+    ASSERT_TRUE(model::write_walk(request.model_file, scene.model).ok());
+    Path path;
+    for (const double second : {0.0, 1.0}) path.samples.push_back({second, Pose{}});
+    for (PathSample& sample : path.samples) sample.pose.position = dvec3(0, 0, 12);
+    ASSERT_TRUE(write_path(request.path_file, path).ok());
+    const auto report = measure_effects(request, {});
+    ASSERT_TRUE(report.ok()) << report.error().text();
+    const EffectWorth& sky = report->effects.back();
+    EXPECT_TRUE(sky.called_for);
+    EXPECT_EQ(sky.shown_at, request.poses);
+    EXPECT_GT(sky.worth.with_ms, 0);
+    EXPECT_GT(sky.worth.without_ms, 0);
+    EXPECT_LT(sky.worth.psnr_db, 30) << "most of the picture is sky";
+    EXPECT_GE(sky.worth.psnr_db, report->bare.psnr_db - 0.1) << "the bare way has none either";
+    EXPECT_EQ(report->ways.all_on.difference.psnr_db, report::max_psnr_db) << "all on has it";
+    EXPECT_EQ(sky.frames_share, 1);
+    EXPECT_EQ(sky.walked_frames, report->use_frames);
+    EXPECT_EQ(sky.triangles_share, 0);
+    EXPECT_EQ(sky.walked_items, 0U);
+    for (const EffectWorth& e : report->effects) EXPECT_EQ(e.behind, &e == &sky) << e.name;
+    ASSERT_TRUE(write_effects_page(folder / "page", *report).ok());
+    const std::string page = *read_text(folder / "page/index.html");
+    EXPECT_NE(page.find("behind everything</td>"), std::string::npos);
+    EXPECT_NE(page.find(sky.along_path), std::string::npos);
+    for (const EffectRegion& region : report->regions) EXPECT_EQ(region.effects.back().reason, "it is behind everything");
+}
+
 TEST(EffectWorth, StopsWhereTheUserSaysSo) {
     const std::atomic<bool> stop = true;
     Progress progress;

@@ -6,8 +6,11 @@
 
 #include "render/bake/bake.hpp"
 #include "render/bake/materials.hpp"
+#include "render/model/walk_file.hpp"
+#include "rt/base/file.hpp"
 #include "tests/bake/scenes.hpp"
 #include "tests/gl/small_models.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace surefoot {
 namespace {
@@ -96,6 +99,48 @@ TEST(Findings, OfABakedModelCountItsFullDetail) {
     ASSERT_EQ(model->effects.size(), static_cast<std::size_t>(model::effect_count));
     EXPECT_EQ(model->effects[2].reason, "1 of 1 materials are lit");
     EXPECT_EQ(model->effects[2].triangles, model->triangles());
+}
+
+TEST(Findings, OfASkyNameWhoAsksForItAndAFileWithoutItHasNone) {
+    constexpr std::size_t sky = 11;  // its bit
+    importer::Scene scene;
+    scene.materials.emplace_back();
+    bake::place(scene, bake::add_mesh(scene, bake::ball(8, 1), "ball"), dvec3(0));
+    const test::TemporaryFolder folder;
+    const auto bytes_of = [&](const model::Model& model) {
+        EXPECT_TRUE(model::write_walk(folder / "it.walk", model).ok());
+        return *read_file(folder / "it.walk");
+    };
+    bake::BakeOptions with_sky;
+    with_sky.sky = true;
+    importer::Scene extra = scene;
+    extra.sky = true;
+    auto without = bake::bake(scene, {}, {});
+    const auto by_bake = bake::bake(scene, with_sky, {}), by_file = bake::bake(extra, {}, {});
+    const auto by_both = bake::bake(extra, with_sky, {});
+    ASSERT_TRUE(without.ok() && by_bake.ok() && by_file.ok() && by_both.ok());
+    EXPECT_EQ(without->effects[sky].bit, model::effect_sky);
+    EXPECT_FALSE(without->effects[sky].called_for);
+    EXPECT_EQ(without->effects[sky].reason, "neither the scene nor the bake names a sky");
+    for (const auto* model : {&*by_bake, &*by_file, &*by_both}) {
+        EXPECT_TRUE(model->effects[sky].called_for);
+        EXPECT_EQ(model->effects[sky].triangles, 0U);
+        for (std::size_t e = 0; e < sky; ++e) EXPECT_EQ(model->effects[e].reason, without->effects[e].reason);
+        for (const model::Material& material : model->materials) EXPECT_EQ(material.effects & model::effect_sky, 0U);
+    }
+    EXPECT_EQ(by_bake->effects[sky].reason, "a sky is behind everything, as bake --sky says");
+    EXPECT_EQ(by_file->effects[sky].reason, "a sky is behind everything, as the scene's file says");
+    EXPECT_EQ(by_both->effects[sky].reason, by_file->effects[sky].reason);
+    EXPECT_EQ(bytes_of(*by_file), bytes_of(*by_both));
+    const auto read = model::read_walk(folder / "it.walk");
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_EQ(read->effects[sky].reason, by_file->effects[sky].reason);
+    const auto none = bytes_of(*without);
+    EXPECT_NE(none, bytes_of(*by_bake));
+    without->effects.resize(sky);  // as before there was any
+    EXPECT_EQ(none, bytes_of(*without));
+    bytes_of(*by_bake);
+    EXPECT_TRUE(model::read_walk(folder / "it.walk")->effects[sky].called_for);
 }
 
 TEST(Findings, OfWaterGoByExtrasAndByNamesWhereTheseAreAsked) {

@@ -63,6 +63,7 @@ importer::Scene rich_yard() {
     lamp.candela = 200;
     scene.lamps.push_back(lamp);
     scene.fog_visibility_m = 100;
+    scene.sky = true;
     return scene;
 }
 
@@ -74,6 +75,7 @@ struct Made {
     int programs = 0, textures = 0, buffers = 0;
     std::set<std::string> uniforms;
     int blended_passes = 0;  ///< of a frame of all objects
+    int array_draws = 0;     ///< of the same frame: passes over the picture
 };
 
 Made make(const importer::Scene& scene) {
@@ -102,7 +104,7 @@ Made make(const importer::Scene& scene) {
     made.buffers = FakeGl::get().buffers - before.buffers;
     made.uniforms = FakeGl::get().uniforms;
     for (const std::string& name : before.uniforms) made.uniforms.erase(name);
-    FakeGl::get().blended_passes = 0;
+    FakeGl::get().blended_passes = FakeGl::get().array_draws = 0;
     std::vector<gl::DrawItem> items;
     for (model::Index n = 0; n < model->nodes.size(); ++n)
         if (model->nodes[n].child_count == 0) items.push_back({n, model->nodes[n].first_rep + model->nodes[n].rep_count - 1});
@@ -112,6 +114,7 @@ Made make(const importer::Scene& scene) {
     (*device)->end_items();
     (*device)->finish_frame();
     made.blended_passes = FakeGl::get().blended_passes;
+    made.array_draws = FakeGl::get().array_draws;
     return made;
 }
 
@@ -125,6 +128,7 @@ TEST(ScenesPay, ForNoEffectWhereNoneIsCalledFor) {
     EXPECT_EQ(made.textures, 0);
     EXPECT_EQ(made.buffers, 2) << "vertices and indices";
     EXPECT_EQ(made.blended_passes, 0);
+    EXPECT_EQ(made.array_draws, 0);
 }
 
 TEST(ScenesPay, ForOneEffectWithItsUniformsAlone) {
@@ -159,6 +163,26 @@ TEST(ScenesPay, ForLightByThePixelWithTextAlone) {
     EXPECT_EQ(by_pixel.blended_passes, 0);
 }
 
+TEST(ScenesPay, ForASkyWithAProgramAndAPassOfItsOwn) {
+    importer::Scene scene = bare_yard();
+    scene.sky = true;
+    const Made made = make(scene);
+    EXPECT_EQ(made.called_for, model::effect_sky);
+    for (const char* stage : {"cutting for light", "sky", "light", "shadows"}) EXPECT_FALSE(made.stages.contains(stage)) << stage;
+    EXPECT_EQ(made.light_bytes, 0U);
+    EXPECT_EQ(made.programs, 2) << "that of the yard, and its own";
+    std::set<std::string> own{"view_projection"};
+    for (const effects::EffectModule& module : effects::all_effects())
+        for (const gl::UniformSource& uniform : module.uniforms)
+            if (module.bit == model::effect_sky) own.insert(uniform.name);
+    EXPECT_GT(own.size(), 3U);
+    EXPECT_EQ(made.uniforms, own);
+    EXPECT_EQ(made.textures, 0);
+    EXPECT_EQ(made.buffers, 2);
+    EXPECT_EQ(made.blended_passes, 0);
+    EXPECT_EQ(made.array_draws, 1);
+}
+
 TEST(ScenesPay, ForAllWhereAllAreCalledFor) {
     const Made made = make(rich_yard());
     for (const effects::EffectModule& module : effects::all_effects()) EXPECT_NE(made.called_for & module.bit, 0U) << module.name;
@@ -174,6 +198,7 @@ TEST(ScenesPay, ForAllWhereAllAreCalledFor) {
     EXPECT_GT(made.textures, 0);
     EXPECT_EQ(made.buffers, 4) << "shadows and lamps have their own";
     EXPECT_EQ(made.blended_passes, 1);
+    EXPECT_EQ(made.array_draws, 1) << "the sky";
 }
 
 }  // namespace

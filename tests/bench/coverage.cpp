@@ -53,7 +53,8 @@ public:
             EngineOptions options;
             options.in_frame_check = false;
             options.resolution = 1;
-            options.hysteresis = 1;  // each pose for itself
+            options.hysteresis = 1;             // each pose for itself
+            options.device.background = false;  // holes are found by the plain colour behind
             if (i == 1) options.device.sky = {0, 0, 0};
             auto engine = Engine::open(std::move(*model), costs, options);
             if (!engine) return engine.error();

@@ -1,6 +1,7 @@
 // A scene pays only for what it calls for: programs hold their effects' code and no other's.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,8 +16,16 @@ std::string text_of(model::EffectMask mask) {
     return source.vertex + source.fragment;
 }
 
+/// Of all programs: what materials may have, and each effect behind everything by itself.
+std::vector<model::EffectMask> program_masks() {
+    std::vector<model::EffectMask> masks;
+    for (model::EffectMask mask = 0; mask < 1U << model::effect_count; ++mask)
+        if ((mask & model::background_effects) == 0 || std::has_single_bit(mask)) masks.push_back(mask);
+    return masks;
+}
+
 TEST(Programs, hold_the_code_of_their_effects_and_of_no_other) {
-    for (model::EffectMask mask = 0; mask < 1U << model::effect_count; ++mask) {
+    for (const model::EffectMask mask : program_masks()) {
         const std::string text = text_of(mask);
         for (const auto& module : effects::all_effects()) {
             for (const auto piece : {module.vertex_declarations, module.vertex_code, module.fragment_declarations,
@@ -65,7 +74,7 @@ TEST(Programs, of_light_by_the_pixel_interpolate_no_colour_that_is_the_materials
 }
 
 TEST(Programs, of_an_alpha_test_cover_part_of_a_pixel_where_pixels_have_several_samples) {
-    for (model::EffectMask mask = 0; mask < 1U << model::effect_count; ++mask) {
+    for (const model::EffectMask mask : program_masks()) {
         const auto source = effects::assemble_program(mask);
         const bool tested = (mask & model::effect_alpha_mask) != 0, blended = (mask & model::effect_blend) != 0;
         EXPECT_EQ(source.fragment_samples.empty(), !tested || blended) << mask << ": a blended alpha is no coverage";
@@ -75,6 +84,22 @@ TEST(Programs, of_an_alpha_test_cover_part_of_a_pixel_where_pixels_have_several_
             EXPECT_NE(source.fragment_samples.find(code), std::string::npos) << module.name << " in mask " << mask;
         }
     }
+}
+
+TEST(Programs, of_what_is_behind_everything_are_their_own_and_add_nothing_to_others) {
+    std::size_t behind = 0;
+    for (const auto& module : effects::all_effects()) {
+        EXPECT_EQ(module.called_for_by_scene != nullptr, (module.bit & model::background_effects) != 0) << module.name;
+        if ((module.bit & model::background_effects) == 0) continue;
+        ++behind;
+        EXPECT_EQ(module.priced_on, 0U) << module.name << ": calibration would give it to materials";
+        EXPECT_EQ(text_of(module.bit).find("world_rows"), std::string::npos) << module.name;
+        for (const model::EffectMask mask : program_masks()) {
+            if (mask == 0 || (mask & model::background_effects) != 0) continue;
+            EXPECT_EQ(text_of(mask | module.bit), text_of(mask)) << module.name << " in mask " << mask;
+        }
+    }
+    EXPECT_GT(behind, 0U);
 }
 
 TEST(Programs, the_bare_one_mentions_no_effect) {

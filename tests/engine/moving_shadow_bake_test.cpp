@@ -120,5 +120,20 @@ TEST(MovingShadowBake, AFileWithoutItIsAsBeforeThereWasAny) {
     EXPECT_EQ(*read_file(folder / "now.walk"), *read_file(folder / "before.walk"));
 }
 
+/// Where something moves, files have said why it has no shadow; later effects that nothing calls for are not in them.
+TEST(MovingShadowBake, AMovingFileWithoutLaterEffectsIsAsBeforeThereWereAny) {
+    const test::TemporaryFolder folder;
+    auto m = bake::bake(lawn_and_ball(true), {}, {});
+    ASSERT_TRUE(m.ok());
+    ASSERT_FALSE(shadow_finding(*m).called_for);
+    ASSERT_TRUE(model::write_walk(folder / "now.walk", *m).ok());
+    while (m->effects.back().bit > model::effect_moving_shadow) m->effects.pop_back();
+    ASSERT_TRUE(model::write_walk(folder / "before.walk", *m).ok());
+    EXPECT_EQ(*read_file(folder / "now.walk"), *read_file(folder / "before.walk"));
+    m->effects.pop_back();
+    ASSERT_TRUE(model::write_walk(folder / "less.walk", *m).ok());
+    EXPECT_NE(*read_file(folder / "now.walk"), *read_file(folder / "less.walk"));
+}
+
 }  // namespace
 }  // namespace surefoot

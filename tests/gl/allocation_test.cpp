@@ -167,6 +167,30 @@ TEST(Allocation, a_shadow_map_makes_none_and_compiles_nothing) {
     EXPECT_EQ(counted, 0);
 }
 
+TEST(Allocation, a_sky_makes_none_and_compiles_nothing) {
+    if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
+    auto scene = many_squares();
+    scene.model.effects.push_back({model::effect_sky, true, 0, "by hand", true});
+    gl::DeviceOptions options;
+    options.viewport = {64, 64};
+    options.rest = true;
+    auto device = gl::open_device(options);
+    if (is_absent(device)) GTEST_SKIP() << device.error().text();
+    ASSERT_TRUE(device.ok()) << device.error().text();
+    (*device)->draws.plays();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    ASSERT_NE((*device)->program_text(model::effect_sky), "");
+    counted = 0;
+    counting = true;
+    for (const float resolution : model::resolution_steps) frame(**device, scene.items, resolution);
+    (*device)->begin_rest(Pose{}, dvec2(0.3));
+    (*device)->draw_rest(scene.items, gl::Parts::all);
+    (*device)->show_rest(1);
+    (*device)->finish_rest_frame();
+    counting = false;
+    EXPECT_EQ(counted, 0);
+}
+
 TEST(Allocation, a_change_of_the_filter_makes_none_and_compiles_nothing) {
     if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
     test::SmallModel small;

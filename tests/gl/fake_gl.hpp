@@ -33,6 +33,7 @@ struct FakeGl {
     GLuint names = 0;
     std::set<std::string> uniforms{};            ///< that programs were asked for
     int blended_passes = 0;                      ///< times that blending began
+    int array_draws = 0;                         ///< calls of glDrawArrays: passes over a picture
     std::vector<std::vector<std::byte>> mapped;  ///< memory of the mapped buffers
     /// Objects of every kind, made and not deleted.
     [[nodiscard]] int objects() const {
@@ -118,6 +119,7 @@ inline gl::Api fake_api() {
         FakeGl::get().uniforms.insert(name);
         return 0;
     };
+    api.DrawArrays = [](GLenum, GLint, GLsizei) { ++FakeGl::get().array_draws; };
     api.Enable = [](GLenum what) { FakeGl::get().blended_passes += what == GL_BLEND ? 1 : 0; };
     api.GetProgramiv = [](GLuint, GLenum, GLint* ok) { *ok = FakeGl::get().links ? GL_TRUE : GL_FALSE; };
     api.FenceSync = [](GLenum, GLbitfield) -> GLsync {

@@ -402,6 +402,31 @@ TEST(GltfFog, OfSeveralFilesTheThickestStays) {
     }
 }
 
+TEST(GltfSky, IsTheScenesExtraIfThatIsTrueOrFalse) {
+    EXPECT_FALSE(import_good({}).sky);
+    EXPECT_TRUE(with_extras(R"({"sky":true})").sky);
+    EXPECT_TRUE(with_extras(R"({"sky":true,"fog_visibility_m":90})").warnings.empty());
+    EXPECT_FALSE(with_extras(R"({"sky":false})").sky);
+    EXPECT_TRUE(with_extras(R"({"sky":false})").warnings.empty());
+    EXPECT_FALSE(with_extras(R"("sky")").sky) << "no object";
+    for (const char* wrong : {R"("blue")", "1", "[true]", "null"}) {
+        const Scene scene = with_extras(R"({"sky":)" + std::string(wrong) + "}");
+        EXPECT_FALSE(scene.sky) << wrong;
+        EXPECT_TRUE(warns(scene, "Scene: the extra 'sky' is not true or false; there is no sky")) << wrong;
+        EXPECT_TRUE(scene.damage.empty());
+    }
+}
+
+TEST(GltfSky, OfOneFileIsThereForAll) {
+    for (const bool first : {true, false}) {
+        Scene all, open, closed;
+        open.sky = true;
+        append(all, Scene(first ? open : closed));
+        append(all, Scene(first ? closed : open));
+        EXPECT_TRUE(all.sky);
+    }
+}
+
 TEST(GltfWater, IsWhatAMaterialsExtraSays) {
     const auto of = [](const std::string& extras) {
         TriangleGltf gltf;

@@ -76,6 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"TooManyLevels", "textures[0]", [](Model& m) { m.textures[0].levels = 3; }},
                     Wrong{"TextureOutOfRange", "materials[0]", [](Model& m) { m.materials[0].texture = 9; }},
                     Wrong{"UnknownEffect", "materials[0]", [](Model& m) { m.materials[0].effects |= 1U << 20U; }},
+                    Wrong{"SkyOnAMaterial", "materials[0]", [](Model& m) { call_for(m, effect_sky); }},
                     Wrong{"NegativeError", "reps[1]", [](Model& m) { m.reps[1].error_m = -1; }},
                     Wrong{"NanArea", "reps[2]", [](Model& m) { m.reps[2].area_m2[1] = nan; }},
                     Wrong{"WrongTriangles", "reps[2]", [](Model& m) { m.reps[2].triangles = 2; }},

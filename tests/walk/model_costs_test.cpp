@@ -121,9 +121,11 @@ TEST(ModelCosts, a_fit_is_nearer_to_measured_frames_than_a_table_five_times_off)
     EXPECT_GT(fit->costs.blur_loss[4], fit->costs.blur_loss[1]);
 }
 
-/// A fit on the null backend, which charges by `combine`, and by a price of every pixel.
-ModelFit fit_without_gl(const model::FrameCombine& combine, float ns_per_pixel = 0) {
+/// A fit on the null backend, which charges by `combine`, by a price of every pixel, and for a sky.
+ModelFit fit_without_gl(const model::FrameCombine& combine, float ns_per_pixel = 0, bool sky = false) {
     auto model = model::read_walk(model_file());
+    for (model::EffectFinding& finding : model->effects)
+        if (finding.bit == model::effect_sky) finding.called_for = sky;
     auto path = choose_path("", model_file(), *model, 0);
     model::CostModel costs = table(1);
     costs.combine = combine;
@@ -167,6 +169,12 @@ TEST(ModelCosts, a_fit_finds_the_price_of_pixels_and_keeps_the_cells_where_they_
     EXPECT_EQ(plain.costs.ns_per_pixel, 0);
     EXPECT_LT(plain.after.p99, 0.02);
     EXPECT_GT(error_of(priced, "sum_of_stages").p50, error_of(plain, "sum_of_stages").p50) << "formulas are by the cells";
+}
+
+TEST(ModelCosts, a_fit_leaves_out_the_sky_that_an_engine_adds) {
+    const ModelFit plain = fit_without_gl({200, 1, 1, 0}), sky = fit_without_gl({200, 1, 1, 0}, 0, true);
+    EXPECT_NEAR(sky.costs.combine.fixed_us, plain.costs.combine.fixed_us, 20) << "the pass takes a hundred times that";
+    EXPECT_NEAR(sky.after.p90, plain.after.p90, 0.005);
 }
 
 TEST(ModelCosts, stopping_a_fit_is_an_error) {

@@ -60,6 +60,10 @@ TEST(Overhead, MultipliesEveryPredictedCost) {
     EXPECT_FLOAT_EQ(fixed_us(more_of_samples), 1.5F * fixed_us(of_samples));
     EXPECT_FLOAT_EQ(more.enlarge_us(0.5F, picture), 1.5F * costs.enlarge_us(0.5F, picture));
     EXPECT_FLOAT_EQ(more_of_samples.rest_pass_us(picture), 1.5F * of_samples.rest_pass_us(picture));
+    const model::CostModel of_sky = model::with_background(costs), more_of_sky = model::with_background(more);
+    EXPECT_GT(fixed_us(of_sky), fixed_us(costs));
+    EXPECT_FLOAT_EQ(fixed_us(more_of_sky), 1.5F * fixed_us(of_sky));
+    EXPECT_FLOAT_EQ(more_of_sky.rest_pass_us(picture), 1.5F * of_sky.rest_pass_us(picture));
 }
 
 TEST(Overhead, OnTheRealClockFullDetailIsPredictedDearerAndTheRecordSaysBy) {

@@ -77,6 +77,7 @@ std::string three_ways(const ThreeWays& w) {
 }
 
 std::string where_words(const EffectWorth& e) {
+    if (e.behind) return "behind everything";
     if (e.where.empty()) return "coarse forms alone";
     std::string out;
     for (const Holder& h : e.where) {

@@ -63,12 +63,16 @@ model::EffectMask effects_of_materials(const model::Model& model) {
     return all;
 }
 
+model::EffectMask effects_of_pictures(const model::Model& model) {
+    return effects_of_materials(model) | (model.called_for() & model::background_effects);
+}
+
 Result<PlacesEngine> open_as_called_for(const PlacesRequest& request) {
     model::WalkFileInfo file;
     auto model = model::read_walk(request.model_file, &file);
     if (!model) return model.error();
     EngineOptions options;
-    options.device.switches = {effects_of_materials(*model)};
+    options.device.switches = {effects_of_pictures(*model)};
     return open_engine_of_places(request, std::move(*model), file.hash, options);
 }
 

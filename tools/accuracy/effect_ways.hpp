@@ -28,6 +28,8 @@ struct ThreeWays {
 
 /// Effects of all materials.
 model::EffectMask effects_of_materials(const model::Model& model);
+/// These, and what is behind everything.
+model::EffectMask effects_of_pictures(const model::Model& model);
 /// An engine for measure_ways() that can leave all effects out.
 Result<PlacesEngine> open_as_called_for(const PlacesRequest& request);
 /// Opens a second engine with all on. as_called_for: has no context on this thread yet. Errors: of the model and the backend;

@@ -51,7 +51,7 @@ private:
             const bool has = std::any_of(items.begin(), items.end(), [&](const gl::DrawItem& item) {
                 return (engine.model().reps[item.rep].effects & off) != 0;
             });
-            if (has) ++shown_at;
+            if (has || (off & model::background_effects) != 0) ++shown_at;
             auto pictures = draw(engine, pose, items, out);
             if (!pictures) return pictures.error();
             difference.add(pictures->first, pictures->second);
@@ -96,6 +96,8 @@ private:
 std::string along_path(const model::Model& m, const UseOfEffects& use, std::size_t bit, bool called_for) {
     const FramesInUse& walked = use.walked;
     if (walked.frames == 0) return {};
+    if (called_for && (1U << bit & model::background_effects) != 0)
+        return "It is drawn behind everything in every frame, and no item has it.";
     if (walked.frames_with[bit] == 0)
         return fmt::format("No item has it in {} of {} frames: {}.", walked.frames, walked.frames,
                            called_for ? "what has it is not in view, or hidden" : "the model does not call for it");
@@ -132,6 +134,11 @@ EffectWorth found_effect(const effects::EffectModule& module, std::size_t bit, c
     effect.walked_frames = use.walked.frames_with[bit];
     effect.walked_items = use.walked.items_with[bit];
     effect.along_path = along_path(model, use, bit, effect.called_for);
+    effect.behind = effect.called_for && (module.bit & model::background_effects) != 0;
+    if (effect.behind) {
+        effect.frames_share = effect.walked_frames_share = 1;
+        effect.walked_frames = use.walked.frames;
+    }
     return effect;
 }
 
@@ -177,7 +184,7 @@ Result<EffectReport> measure_effects(const PlacesRequest& request, const Progres
     auto use = measure_whole(request, chosen->path, poses, progress, report);
     if (!use) return use.error();
     Comparing comparing(request, poses, progress);
-    const model::EffectMask all = effects_of_materials(*model);
+    const model::EffectMask all = effects_of_pictures(*model);
     const auto modules = effects::all_effects();
     for (std::size_t e = 0; e < modules.size(); ++e) {
         EffectWorth effect =

@@ -24,6 +24,7 @@ struct WithAndWithout : PictureDifference {
 struct EffectWorth {
     std::string name, help, requested_by, reason;
     bool called_for = false;
+    bool behind = false;  ///< it is drawn behind everything: in every frame, and by no item
     std::uint64_t triangles = 0;
     std::uint32_t shown_at = 0;  ///< places whose full detail uses it
     WithAndWithout worth;        ///< only if it is shown somewhere

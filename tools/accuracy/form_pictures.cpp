@@ -263,6 +263,7 @@ Result<std::unique_ptr<Engine>> open_drawing_engine(const FormPicturesRequest& r
     EngineOptions options;
     options.device.kind = (*backend)->kind;
     options.device.viewport = {form_picture_px, form_picture_px};
+    options.device.background = false;  // a form alone: what shows where it is not is one colour
     return Engine::open(std::move(model), costs, options);
 }
 

@@ -30,7 +30,7 @@ struct BakeArguments {
     double fog_visibility_m = 0;
     CLI::Option* fog = nullptr;
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
-    bool allow_incomplete = false, whole_objects = false, water = false, light_by_pixel = false, json = false;
+    bool allow_incomplete = false, whole_objects = false, water = false, sky = false, light_by_pixel = false, json = false;
 };
 
 constexpr std::array<std::string_view, 2> qualities = {"draft", "full"};
@@ -117,6 +117,7 @@ int run_bake(const BakeArguments& a, const Context& context) {
     if (a.fog->count() > 0) options.fog_visibility_m = a.fog_visibility_m;
     options.water_by_name = a.water;
     options.light_by_pixel = a.light_by_pixel;
+    options.sky = a.sky;
     options.workers = settings->values.workers;
     options.frame_us = 1e6 / settings->values.rate_hz;
     options.costs = &*costs;
@@ -195,6 +196,8 @@ void add_bake(CLI::App& app, Context& context) {
     c->add_flag("--light-by-pixel", a->light_by_pixel,
                 "Lit materials are lit for each pixel, which takes longer. "
                 "The extra 'light' of a glTF material, flat, vertex or pixel, says it of one");
+    c->add_flag("--sky", a->sky,
+                "A sky behind everything, with the sun in it. The extra 'sky' of a glTF scene, true, says it without this");
     add_setting(c, a->settings, "--workers", "workers", "Threads; 0: one per core. The result does not depend on it.");
     add_setting(c, a->settings, "--rate", "rate_hz", "Frame rate; no item of the model may cost more than 1/16 of a frame.");
     c->add_flag("--allow-incomplete", a->allow_incomplete,

@@ -270,7 +270,8 @@ model::CostModel with_overhead(model::CostModel costs, double factor) {
     costs.combine.submit_weight *= f;
     costs.combine.raster_weight *= f;
     costs.combine.max_weight *= f;
-    for (float* of_passes : {&costs.enlarge_ns_per_pixel, &costs.sample_pass_ns_per_pixel, &costs.rest_pass_ns_per_pixel})
+    for (float* of_passes : {&costs.enlarge_ns_per_pixel, &costs.sample_pass_ns_per_pixel, &costs.rest_pass_ns_per_pixel,
+                             &costs.background_ns_per_pixel})
         *of_passes *= f;
     return costs;
 }
