@@ -189,7 +189,7 @@ done
 
 # The manual: a page a command, which man takes without a warning, and every option of --help on it.
 json manual -o man
-for command in $("$surefoot" --help | sed -n '/Subcommands:/,$s/^  \([a-z][a-z]*\) .*/\1/p'); do
+for command in $("$surefoot" --help | sed -n '/Subcommands:/,$s/^  \([a-z][a-z-]*\) .*/\1/p'); do
   [ -s "man/surefoot-$command.1" ] || { complain "no manual page of $command"; continue; }
   for option in $("$surefoot" "$command" --help | grep -oE '^  (-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+'); do
     grep -qF -- "$(sed 's/-/\\-/g' <<<"$option")" "man/surefoot-$command.1" || complain "manual page of $command lacks $option"
@@ -222,6 +222,17 @@ refuse 'best-worst' replay c.cap --selector best-worst
 grep -q '^uncalibrated' out || complain "the figures are not marked as uncalibrated"
 grep -q 'not fully real-time: no cost' out err && complain "a missing cost table is no lack of real time"
 expect 1 '^surefoot: --strict.*no cost table.*calibrate' walk f.walk --strict --frames 5
+
+# The image cache, counted.
+json cache-study flat --frames 6 --birds-eye sheet.png
+grep -q '"boxes": 341' out && grep -q '"not_replaceable"' out || complain "cache-study lacks its counts: $(head -c 300 out)"
+grep -q '"ms"' out && complain "cache-study has times of what it does not draw"
+head -c 4 sheet.png | grep -q PNG || complain "the bird's-eye view is no picture"
+refuse 'garden.*flat, forest, zoom, room' cache-study garden
+refuse '--frames.*0.* 1 to' cache-study flat --frames 0
+refuse '--size abc.* 16 to 16384' cache-study flat --size abc
+refuse 'sheet.jpg.*FILE.png' cache-study flat --birds-eye sheet.jpg
+expect 1 'nonexistent' cache-study flat --frames 2 --birds-eye /nonexistent/sheet.png
 
 # Paths that are out of all measure.
 for row in 1e300,0,0,0,0,0,0,1 1,1e300,0,0,0,0,0,1 1,nan,0,0,0,0,0,1 1,1e999,0,0,0,0,0,1 1,0,0,0,1e300,0,0,1; do
@@ -256,6 +267,9 @@ stop_after 0.4 bake big.glb -o f.walk; got=$?
 cmp -s f.walk kept.walk || complain "a stopped bake changed the model that was there"
 stop_after 1 selftest --hard L2 --scale 100; got=$?
 [ $got -eq 130 ] || complain "exit $got, not 130, of a stopped selftest: $(cat err)"
+stop_after 0.5 cache-study flat --frames 1000000 --birds-eye stopped.png; got=$?
+[ $got -eq 130 ] || complain "exit $got, not 130, of a stopped cache-study: $(cat err)"
+[ -e stopped.png ] && complain "a stopped cache-study left a picture"
 for command in "calibrate --quick --state stopped" "accuracy f.walk --repeats 100 --poses 256 -o stopped"; do
   stop_after 1 $command; got=$?
   grep -qi 'egl\|gl ' err && continue  # no software GL on this machine: nothing to stop

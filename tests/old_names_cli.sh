@@ -10,7 +10,7 @@ by_name="(is now '[^']+'|was removed)[.] [A-Z]"
 
 # What the tool takes today, in the list's form.
 options_of() { "$surefoot" $1 --help | grep -oE '^ +(-[a-z],)?--[a-z][a-z-]*' | grep -oE -e '--[a-z-]+' | grep -vx -e --help | sed "s/^/$1 /"; }
-commands_of() { "$surefoot" $1 --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p'; }
+commands_of() { "$surefoot" $1 --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z-]*\) .*/\1/p'; }
 for command in $(commands_of ''); do
   for sub in '' $(commands_of "$command"); do options_of "$command${sub:+ $sub}"; done
 done >today

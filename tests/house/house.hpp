@@ -54,6 +54,7 @@ inline const std::vector<Room>& rooms() {
         {"render/prepare", {"render/model", "rt/clock"}},
         {"render/select", {"render/model", "render/prepare"}},
         {"render/effects", {"render/model", "render/gl"}},
+        {"render/cache", {"render/model"}},
         {"render/capture", {"render/model", "render/prepare", "render/select"}},
         {"render", {"render/"}},  // the door, engine.hpp, and what stands right behind it
         {"tools/walk", below_tools_and({"tools/report", "tools/scenes"})},
@@ -63,6 +64,7 @@ inline const std::vector<Room>& rooms() {
         {"tools/monitor", below_tools_and({"tools/report", "tools/walk"})},
         {"tools/doctor", below_tools_and({"tools/report", "tools/walk"})},
         {"tools/selftest", below_tools_and({"tools/scenes"})},
+        {"tools/cache_study", below_tools_and({"tools/scenes"})},
         {"tools/cli", below_tools_and({"tools/"})},
         {"systemd/daemon", {"rt/", "config", "tools/walk", "tools/monitor"}},
         {"tools/report", {"rt/", "render/image", "render/model", "render/model/ground"}},

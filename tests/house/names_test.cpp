@@ -115,6 +115,8 @@ bool is_meant(std::string_view file, std::string_view name) {
         {"tools/selftest/transforms.cpp", "flat"},     // the name of an object in a scene
         {"render/import/gltf_material.cpp", "flat"},   // how a surface is lit
         {"tools/selftest/fixtures.cpp", "two-stage"},  // a settings file as a user writes it
+        // A study of a plain.
+        {"tools/cache_study/study_scenes.cpp", "flat"},
     };
     return std::find(meant.begin(), meant.end(), Pair{file, name}) != meant.end();
 }

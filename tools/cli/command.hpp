@@ -64,6 +64,7 @@ void add_replay(CLI::App& app, Context& context);
 void add_devices(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
 void add_selftest(CLI::App& app, Context& context);
+void add_cache_study(CLI::App& app, Context& context);
 void add_config(CLI::App& app, Context& context);
 void add_status(CLI::App& app, Context& context);
 void add_top(CLI::App& app, Context& context);

@@ -76,6 +76,7 @@ void add_commands(CLI::App& app, surefoot::cli::Context& context) {
     cli::add_config(app, context);
     cli::add_doctor(app, context);
     cli::add_selftest(app, context);
+    cli::add_cache_study(app, context);
     cli::add_status(app, context);
     cli::add_top(app, context);
     cli::add_manual(app, context);

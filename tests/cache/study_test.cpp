@@ -1,0 +1,120 @@
+// The studies: numbers of boxes, the shape of the counts, and what a bird's-eye view shows.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "tools/cache_study/study.hpp"
+#include "tools/cache_study/study_scenes.hpp"
+
+namespace surefoot::cache_study {
+namespace {
+
+Study study_of(const char* name, std::uint32_t frames = 0, bool pictures = false) {
+    StudyRequest request;
+    request.study = name;
+    request.frames = frames;
+    request.pictures = pictures;
+    auto study = run_study(request, {});
+    EXPECT_TRUE(study) << study.error().text();
+    return study ? std::move(*study) : Study{};
+}
+
+TEST(CacheStudy, HasTheBoxesAndFramesOfThePaper) {
+    EXPECT_EQ(usual_frames("flat"), 120U);
+    EXPECT_EQ(usual_frames("forest"), 100U);
+    EXPECT_EQ(usual_frames("zoom"), 100U);
+    EXPECT_EQ(study_of("flat", 2).boxes, 341U);
+    EXPECT_EQ(study_of("flat", 2).filled_boxes, 341U);
+    const Study forest = study_of("forest", 2);
+    EXPECT_EQ(forest.boxes, 585U);
+    EXPECT_EQ(forest.triangles, 105'000U);
+    EXPECT_EQ(study_of("room", 2).boxes, 73U);
+}
+
+TEST(CacheStudy, OfThePlainHasTheShapeOfFigure6) {
+    const Study study = study_of("flat");
+    ASSERT_EQ(study.corrected.size(), 120U);
+    const StudySums sums = sums_after_first(study.corrected);
+    EXPECT_GE(sums.reused, 10 * sums.combined);
+    EXPECT_GT(sums.combined, sums.fresh);
+    for (const StudyFrame& frame : study.corrected) {
+        EXPECT_GT(frame.counts.not_replaceable, 0U) << "the block round the eye";
+        EXPECT_LT(frame.counts.not_replaceable, 100U);
+        EXPECT_GT(frame.bytes, 0U);
+    }
+}
+
+TEST(CacheStudy, MeasuresNoMoreThanIsPromisedAndMoreByThePublishedTests) {
+    for (const char* name : {"flat", "forest", "zoom", "room"}) {
+        const Study study = study_of(name);
+        for (const StudyFrame& frame : study.corrected) {
+            EXPECT_LE(frame.bound_px, 1) << name;
+            EXPECT_LE(frame.measured_px, frame.bound_px + 1e-9) << name;
+        }
+        EXPECT_GT(sums_after_first(study.corrected).measured_px, 0.3) << name << ": the bound is far from what happens";
+        EXPECT_GT(sums_after_first(study.published).measured_px, 1.2) << name;
+    }
+}
+
+TEST(CacheStudy, IsTheSameTwice) {
+    const Study a = study_of("flat", 20), b = study_of("flat", 20);
+    for (std::size_t i = 0; i < a.corrected.size(); ++i) {
+        EXPECT_EQ(a.corrected[i].counts.fresh, b.corrected[i].counts.fresh);
+        EXPECT_EQ(a.corrected[i].counts.reused, b.corrected[i].counts.reused);
+        EXPECT_EQ(a.corrected[i].bytes, b.corrected[i].bytes);
+        EXPECT_EQ(a.corrected[i].measured_px, b.corrected[i].measured_px);
+    }
+}
+
+TEST(CacheStudy, WrongNamesAndStopsAreErrors) {
+    StudyRequest request;
+    request.study = "flatter";
+    const auto wrong = run_study(request, {});
+    ASSERT_FALSE(wrong);
+    EXPECT_EQ(wrong.error().kind, ErrorKind::not_found);
+    EXPECT_NE(wrong.error().text().find("forest"), std::string::npos);
+    const std::atomic<bool> stop{true};
+    Progress progress;
+    progress.stop = &stop;
+    request.study = "flat";
+    const auto stopped = run_study(request, progress);
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().kind, ErrorKind::stopped);
+}
+
+/// Share of a view in which the channel stands out above both others, or all are near one value.
+struct Inks {
+    double red = 0, green = 0, white = 0, black = 0;
+};
+Inks inks_of(const BirdsEyeView& view) {
+    Inks inks;
+    for (std::size_t i = 0; i < view.size(); i += 4) {
+        const int r = view[i], g = view[i + 1], b = view[i + 2];
+        inks.red += r > g + 60 && r > b + 60 ? 1 : 0;
+        inks.green += g > r + 60 && g > b + 60 ? 1 : 0;
+        inks.white += std::min({r, g, b}) > 240 ? 1 : 0;
+        inks.black += std::max({r, g, b}) < 30 ? 1 : 0;
+    }
+    const double all = static_cast<double>(view.size()) / 4;
+    return {inks.red / all, inks.green / all, inks.white / all, inks.black / all};
+}
+
+TEST(BirdsEye, FirstIsRedAndGreenThenMostlyWhiteRoundABlackBlock) {
+    const Study study = study_of("flat", 0, true);
+    ASSERT_EQ(study.sheet.views.size(), max_views);
+    const Inks first = inks_of(study.sheet.views.front()), later = inks_of(study.sheet.views.back());
+    EXPECT_GT(first.red, 0.05);
+    EXPECT_GT(first.green, 0.3);
+    EXPECT_LT(first.white, 0.01);
+    EXPECT_GT(later.white, 0.5);
+    EXPECT_GT(later.black, 0.02);
+    EXPECT_LT(later.black, 0.3);
+    const SheetPicture sheet = picture_of_sheet(study.sheet);
+    EXPECT_EQ(sheet.width, 5 * (view_px + view_gap_px) + view_gap_px);
+    EXPECT_EQ(sheet.rgba.size(), std::size_t{4} * sheet.width * sheet.height);
+    EXPECT_EQ(picture_of_sheet({}).width, 0U);
+}
+
+}  // namespace
+}  // namespace surefoot::cache_study

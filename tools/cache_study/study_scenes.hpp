@@ -1,0 +1,30 @@
+// What the image cache is studied on: scenes, trees and walks like those of Schaufler and Stuerzlinger 1996, section 5.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "render/cache/boxes.hpp"
+#include "rt/base/named.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::cache_study {
+
+/// A scene as triangles, its boxes, and the eye of each frame.
+struct StudyScene {
+    std::vector<cache::Triangle> triangles;
+    cache::BoxTree tree;
+    std::vector<dvec3> eyes;
+};
+
+/// Names and help of the studies.
+std::span<const Named> studies();
+
+/// Frames that the paper shows of a study.
+std::uint32_t usual_frames(std::string_view study);
+
+/// frames: 1 or more. Error: unknown name.
+Result<StudyScene> make_study(std::string_view study, std::uint32_t frames);
+
+}  // namespace surefoot::cache_study
