@@ -22,9 +22,9 @@ extern const EffectModule light_by_pixel_module;
 extern const EffectModule sky_module;
 
 inline constexpr std::array<const EffectModule*, model::effect_count> registry{
-    &texture_module, &vertex_colour_module, &sun_module, &alpha_mask_module, &blend_module,         &openness_module,
-    &shadow_module,  &lamps_module,         &fog_module, &water_module,      &moving_shadow_module, &light_by_pixel_module,
-    &sky_module};
+    &texture_module,       &vertex_colour_module,  &sun_module,   &alpha_mask_module, &blend_module,
+    &openness_module,      &shadow_module,         &lamps_module, &fog_module,        &water_module,
+    &moving_shadow_module, &light_by_pixel_module, &sky_module};
 
 /// Writes a uniform of type vec3.
 constexpr void put(const vec3& value, float* to) {

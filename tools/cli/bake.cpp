@@ -78,6 +78,22 @@ void print_warnings(const std::vector<std::string>& warnings) {
         notify(fmt::format("{} more kinds of warnings are not shown. `surefoot inspect` lists all.", kinds.size() - max_kinds));
 }
 
+bake::BakeOptions options_of(const BakeArguments& a, const config::Settings& settings, const model::CostModel& costs) {
+    bake::BakeOptions options;
+    options.quality = a.quality == "full" ? bake::Quality::full : bake::Quality::draft;
+    options.whole_objects = a.whole_objects;
+    options.level_ratio = a.level_ratio * 0.01;
+    if (a.sun_hour->count() > 0) options.sun = a.sun;
+    if (a.fog->count() > 0) options.fog_visibility_m = a.fog_visibility_m;
+    options.water_by_name = a.water;
+    options.light_by_pixel = a.light_by_pixel;
+    options.sky = a.sky;
+    options.workers = settings.workers;
+    options.frame_us = 1e6 / settings.rate_hz;
+    options.costs = &costs;
+    return options;
+}
+
 int run_bake(const BakeArguments& a, const Context& context) {
     const auto begun = std::chrono::steady_clock::now();
     const auto settings = read_settings(*a.settings);
@@ -109,18 +125,7 @@ int run_bake(const BakeArguments& a, const Context& context) {
     auto scene = importer::import_files(a.in, progress);
     if (!scene) return end_progress(context), fail(scene.error());
     if (!a.allow_incomplete && !scene->damage.empty()) return end_progress(context), fail(incomplete(scene->damage));
-    bake::BakeOptions options;
-    options.quality = a.quality == "full" ? bake::Quality::full : bake::Quality::draft;
-    options.whole_objects = a.whole_objects;
-    options.level_ratio = a.level_ratio * 0.01;
-    if (a.sun_hour->count() > 0) options.sun = a.sun;
-    if (a.fog->count() > 0) options.fog_visibility_m = a.fog_visibility_m;
-    options.water_by_name = a.water;
-    options.light_by_pixel = a.light_by_pixel;
-    options.sky = a.sky;
-    options.workers = settings->values.workers;
-    options.frame_us = 1e6 / settings->values.rate_hz;
-    options.costs = &*costs;
+    const bake::BakeOptions options = options_of(a, settings->values, *costs);
     auto model = bake::bake(*scene, options, progress);
     if (!model) return end_progress(context), fail(model.error());
     auto written = model::write_walk(a.out, *model);
