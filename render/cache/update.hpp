@@ -26,7 +26,7 @@ struct CacheOptions {
     std::uint64_t max_bytes = 256ULL << 20U;          ///< of all pictures
     std::uint32_t max_generation = 4;                 ///< pictures of pictures of ...; 0: every picture is of triangles
     double child_share = 0.95;                        ///< of the error that a picture may have: what it inherits at most
-    std::uint32_t upkeep_refreshes = 8;               ///< children's pictures that a frame refreshes ahead, at most; 0: none
+    std::uint32_t upkeep_refreshes = 8;               ///< ahead: a frame that has so many begins no further child; 0: none
     std::uint32_t upkeep_frames = 16;                 ///< their parent's picture is expected to fail within so many frames
     bool surround = true;                             ///< pictures are kept all round the eye; else only in the view
 };

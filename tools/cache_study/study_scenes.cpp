@@ -62,7 +62,7 @@ Result<std::vector<cache::Triangle>> generated(std::string_view name) {
 const dvec3 diagonal = dvec3(1, 0, 1) / 1.4142135623730951;
 
 const std::array<StudyEntry, 4> entries = {
-    StudyEntry{{"flat", "a plain of 512 m, crossed on its diagonal (figures 6 and 9)"},
+    StudyEntry{{"flat", "a plain of 512 m, on its diagonal (figures 6 and 9)"},
                120,
                {.branching = 4, .levels = 5},
                plain,
@@ -101,6 +101,7 @@ const StudyEntry* entry_of(std::string_view study) {
 std::span<const Named> studies() {
     static const std::vector<Named> names = [] {
         std::vector<Named> all;
+        all.reserve(entries.size());
         for (const StudyEntry& entry : entries) all.push_back(entry.name);
         return all;
     }();

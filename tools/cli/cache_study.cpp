@@ -67,8 +67,9 @@ void print_study_json(const CacheStudyArguments& a, const cache_study::Study& st
 }
 
 void print_study_text(const CacheStudyArguments& a, const cache_study::Study& study) {
-    fmt::print("{}: {} boxes, {} of them with triangles ({} in all); {} frames of {}x{} at 60 degrees\n", a.request.study,
-               study.boxes, study.filled_boxes, study.triangles, study.corrected.size(), a.request.width, a.request.height);
+    fmt::print("{}: {} triangles in {} boxes, {} of them empty; {} frames of {}x{} at 60 degrees\n", a.request.study,
+               study.triangles, study.boxes, study.boxes - study.filled_boxes, study.corrected.size(), a.request.width,
+               a.request.height);
     const report::Columns columns(
         {{"", 28}, {"new", -7}, {"combined", -9}, {"reused", -8}, {"not replaceable", -16}, {"most new", -9}, {"measured", -10}});
     fmt::print("{}\n", columns.heading());
