@@ -28,7 +28,6 @@
 #include "render/bake/stage.hpp"
 #include "render/bake/tour.hpp"
 #include "render/bake/trim_masks.hpp"
-#include "render/effects/effects.hpp"
 #include "render/model/pixels.hpp"
 
 namespace surefoot::bake {
@@ -401,15 +400,13 @@ void BakeContext::measure_areas() {
 
 void BakeContext::find_effects() {
     std::vector<std::uint64_t> material_triangles(scene.materials.size(), 0);
-    for (const PlacedObject& object : objects) {
+    for (const PlacedObject& object : objects)
         for (const GeometryPart& part : forms[object.mesh].chain.levels.back().parts)
             material_triangles[part.material] += part.indices.size() / 3;
-    }
     keep_used_effects(model, light.openness.copies);
-    const effects::SceneFacts facts{scene.sky || options.sky};
-    model.effects = bake::find_effects(model, material_triangles, light, effects::called_for_by(facts));
+    model.effects = bake::find_effects(model, material_triangles, light);
     add_sun_reason(scene, options.sun, model.effects);
-    add_sky_reason(scene, model.effects);
+    add_scene_effects(scene, options.sky, model.effects);
     add_moving_shadow(model);
 }
 

@@ -326,7 +326,7 @@ void keep_used_effects(model::Model& model, std::span<const std::pair<model::Ind
 }
 
 std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
-                                               const SceneLight& light, model::EffectMask by_scene) {
+                                               const SceneLight& light) {
     std::vector<model::EffectMask> masks;
     for (const model::Material& material : model.materials) masks.push_back(material.effects);
     for (const auto& [copy, original] : light.openness.copies)  // its triangles are the original's
@@ -344,11 +344,10 @@ std::vector<model::EffectFinding> find_effects(const model::Model& model, const 
         // Coarse forms carry their colours in the vertices, and boxes carry pictures: the bake's own forms call too.
         std::uint64_t own = 0;
         for (const model::Representation& rep : model.reps) own += (rep.effects & f.bit) != 0 ? 1 : 0;
-        f.called_for = materials > 0 || own > 0 || (by_scene & f.bit) != 0;
-        f.reason = (by_scene & f.bit) != 0 ? std::string(module.have)
-                   : materials > 0 ? fmt::format("{} of {} materials {}", materials, triangles_of_material.size(), module.have)
-                   : own > 0       ? fmt::format("{}; {} baked representations need it", module.missing, own)
-                                   : std::string(module.missing);
+        f.called_for = materials > 0 || own > 0;
+        f.reason = materials > 0 ? fmt::format("{} of {} materials {}", materials, triangles_of_material.size(), module.have)
+                   : own > 0     ? fmt::format("{}; {} baked representations need it", module.missing, own)
+                                 : std::string(module.missing);
         findings.push_back(std::move(f));
     }
     add_to_findings(light.openness, findings);
@@ -356,10 +355,14 @@ std::vector<model::EffectFinding> find_effects(const model::Model& model, const 
     return findings;
 }
 
-void add_sky_reason(const importer::Scene& scene, std::vector<model::EffectFinding>& findings) {
-    for (model::EffectFinding& f : findings)
-        if (f.bit == model::effect_sky && f.called_for)
-            f.reason += scene.sky ? ", as the scene's file says" : ", as bake --sky says";
+void add_scene_effects(const importer::Scene& scene, bool sky_by_bake, std::vector<model::EffectFinding>& findings) {
+    const model::EffectMask called_for = effects::called_for_by(effects::SceneFacts{scene.sky || sky_by_bake});
+    for (const effects::EffectModule& module : effects::all_effects())
+        for (model::EffectFinding& f : findings) {
+            if (f.bit != module.bit || (called_for & f.bit) == 0) continue;
+            f.called_for = true;
+            f.reason = fmt::format("{}, as {} says", module.have, scene.sky ? "the scene's file" : "bake --sky");
+        }
 }
 
 void add_sun_reason(const importer::Scene& scene, const std::optional<model::SunTime>& time,

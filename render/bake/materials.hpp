@@ -46,11 +46,11 @@ std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model:
 /// What nothing is drawn with calls for no effects. copies: materials that stand for others without the sun, and which; an
 /// original of which only the copy is drawn takes the copy's effects.
 void keep_used_effects(model::Model& model, std::span<const std::pair<model::Index, model::Index>> copies);
-/// One finding an effect, with its reason. triangles_of_material: full detail. by_scene: what no material has.
+/// One finding an effect, with its reason. triangles_of_material: full detail.
 std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material,
-                                               const SceneLight& light = {}, model::EffectMask by_scene = 0);
-/// Adds to the sky's finding who names it, if it is called for.
-void add_sky_reason(const importer::Scene& scene, std::vector<model::EffectFinding>& findings);
+                                               const SceneLight& light = {});
+/// Into the findings: what the scene, or the bake, calls for that no material has.
+void add_scene_effects(const importer::Scene& scene, bool sky_by_bake, std::vector<model::EffectFinding>& findings);
 /// Adds to the sun's finding why it stands where it does, if it is called for.
 void add_sun_reason(const importer::Scene& scene, const std::optional<model::SunTime>& time,
                     std::vector<model::EffectFinding>& findings);

@@ -79,7 +79,7 @@ struct CostModel {
     float drawn_pass_ns_per_pixel = 0;
     float rest_pass_ns_per_pixel = 8;  ///< of one pass over the picture at rest; typical, no calibration measures it
     /// Of what is behind everything (background_effects), in models that call for it; typical, no calibration measures it.
-    float background_ns_per_pixel = 2.5F;
+    float background_ns_per_pixel = 3.7F;
     /// Six times the mean squared error (0..1) of full detail that is enlarged. Typical of five scenes; a fit measures its model.
     BlurLoss blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
     rt::TextureFilter filter = rt::TextureFilter::automatic;  ///< that it was measured by; automatic: as the device chooses

@@ -140,6 +140,8 @@ TEST(EffectWorth, ASkyIsShownInEveryPictureAndNoItemHasIt) {
     EXPECT_LT(sky.worth.psnr_db, 30) << "most of the picture is sky";
     EXPECT_GE(sky.worth.psnr_db, report->bare.psnr_db - 0.1) << "the bare way has none either";
     EXPECT_EQ(report->ways.all_on.difference.psnr_db, report::max_psnr_db) << "all on has it";
+    EXPECT_EQ(report->ways.as_called_for.programs, 5U) << "one more than without it";
+    EXPECT_EQ(report->ways.bare.programs, 1U);
     EXPECT_EQ(sky.frames_share, 1);
     EXPECT_EQ(sky.walked_frames, report->use_frames);
     EXPECT_EQ(sky.triangles_share, 0);

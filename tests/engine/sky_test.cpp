@@ -11,10 +11,10 @@ namespace {
 
 constexpr model::Viewport sky_viewport{640, 400};
 
-std::unique_ptr<Engine> engine_before(bool sky, bool shown = true, std::uint32_t samples = 1) {
+std::unique_ptr<Engine> engine_before(bool has_sky, bool shown = true, std::uint32_t samples = 1) {
     model::Model forest = test::forest_model();
     for (model::EffectFinding& finding : forest.effects)
-        if (finding.bit == model::effect_sky) finding.called_for = sky;
+        if (finding.bit == model::effect_sky) finding.called_for = has_sky;
     EngineOptions options;
     options.device.kind = gl::BackendKind::null;
     options.device.viewport = sky_viewport;

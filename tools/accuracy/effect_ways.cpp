@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <vector>
 
 #include "render/model/walk_file.hpp"
@@ -82,10 +83,11 @@ Result<ThreeWays> measure_ways(Engine& as_called_for, const PlacesRequest& reque
     model::WalkFileInfo file;
     auto model = model::read_walk(request.model_file, &file);
     if (!model) return model.error();
-    out.as_called_for.programs = programs_of(*model);
+    const auto behind = static_cast<std::uint32_t>(std::popcount(model->called_for() & model::background_effects));
+    out.as_called_for.programs = programs_of(*model) + behind;
     out.bare.programs = programs_of(*model, effects_of_materials(*model));
     out.spread = turn_all_on(*model);
-    out.all_on.programs = programs_of(*model);
+    out.all_on.programs = programs_of(*model) + behind;
     auto opened = open_engine_of_places(request, std::move(*model), file.hash, {});
     if (!opened) return opened.error();
     opened->engine->device().bind();
