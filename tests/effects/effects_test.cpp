@@ -58,6 +58,9 @@ TEST(Programs, have_light_at_the_vertices_or_in_the_pixels_and_never_in_both) {
         }
         EXPECT_EQ(holds(source.fragment, "v_normal"), by_pixel && has_light) << mask;
         EXPECT_EQ(holds(source.vertex, "v_normal"), by_pixel && has_light) << mask;
+        const bool turns_vertices = has_light && (!by_pixel || (mask & model::effect_moving_shadow) != 0);  // for its bias
+        EXPECT_EQ(holds(source.vertex, "if (turned) n = -n;"), turns_vertices) << mask;
+        EXPECT_EQ(holds(source.fragment, "if (turned) n = -n;"), by_pixel && has_light) << mask;
         if (!by_pixel || has_light) continue;
         const auto without = effects::assemble_program(mask & ~model::effect_light_by_pixel);
         EXPECT_EQ(source.vertex, without.vertex) << "nothing is lit in mask " << mask;
