@@ -19,7 +19,8 @@ struct BoxRequest {
     std::uint32_t pixels = 28;  ///< of a face's side: face_pixels()
 };
 
-/// A box a node; those that are not wanted have no faces. Errors are not bounded yet. Empty: step() said to stop.
+/// A box a node; those that are not wanted have no faces. Errors are not bounded yet. Where shadows or lamps were measured,
+/// pictures are without light, which their corners have (box_light.hpp). Empty: step() said to stop.
 std::vector<BoxForm> capture_boxes(const model::Model& model, const BoxRequest& request, const ForAll& for_all,
                                    const std::function<bool()>& step);
 /// How many steps there are.
@@ -31,7 +32,8 @@ public:
     PlacedBoxes(std::vector<BoxForm> boxes, model::Index proxy, model::Model& model);
     /// Takes out the boxes that are best at no size on the screen: others look about as good for no more time. Call it once the
     /// losses are measured. Those that cover too little or too much of full detail go too, if a coarse mesh is left.
-    /// covered: MeasuredLosses::covered; empty: not known. Returns how many are left.
+    /// covered: MeasuredLosses::covered; empty: not known. Returns how many are left. Of these, what shows no hole loses its
+    /// mask.
     std::size_t drop_idle(const model::CostModel& costs, const std::vector<float>& covered = {});
 
 private:
