@@ -15,6 +15,19 @@
 
 namespace surefoot {
 
+namespace {
+
+/// An effect that is newer than the table is not free: it has the usual price until somebody calibrates again.
+void add_missing_prices(model::EffectMask called_for, std::vector<model::EffectPrice>& prices) {
+    for (const model::EffectPrice& usual : effects::usual_prices()) {
+        const bool has =
+            std::any_of(prices.begin(), prices.end(), [&](const auto& price) { return price.effect == usual.effect; });
+        if (!has && (called_for & usual.effect) != 0) prices.push_back(usual);
+    }
+}
+
+}  // namespace
+
 Engine::Engine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Engine::~Engine() = default;
 
@@ -25,6 +38,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->costs = costs;
     // A table that was measured before effects had prices keeps none: those of another machine would mislead.
     if (impl->costs.prices.empty() && !impl->costs.calibrated) impl->costs.prices = effects::usual_prices();
+    if (impl->costs.prices_measured) add_missing_prices(impl->model.called_for(), impl->costs.prices);
     impl->options = options;
     auto selector = select::selector_named(options.selector);
     if (!selector) return selector.error();
@@ -35,6 +49,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     if (options.device.background && (impl->model.called_for() & model::background_effects) != 0)
         impl->costs = model::with_background(std::move(impl->costs));
     impl->options.device.null.rest_pass_us = static_cast<double>(impl->costs.rest_pass_us(options.device.viewport));
+    impl->options.device.null.behind_us = static_cast<double>(impl->costs.behind_us(options.device.viewport));
     impl->options.resolution = model::stepped(options.resolution);
     if (impl->options.resolution > 0.0F) impl->drawn_resolution = impl->options.resolution;
     impl->options.device.smaller = impl->options.resolution < 1.0F;

@@ -107,7 +107,7 @@ struct Engine::Impl {
         const model::ItemCost &so_far, &next, &stand_in, &rest;
         float in_flight_us;            ///< of so_far's raster time: not finished yet
         model::ItemCost pending = {};  ///< of so_far: not handed to the device yet
-        float map_us = 0;              ///< of what was bought: the shadow map, while it is not finished yet
+        float before_us = 0;           ///< of what comes before the first slice, while it is not finished yet
     };
     [[nodiscard]] select::SelectInput input_of(const prepare::PreparedFrame& set, double budget_us, const Correction& by,
                                                double target_error_rad) const REQUIRES(draws);
@@ -146,6 +146,7 @@ struct Engine::Impl {
     void offer_shadow(const prepare::PreparedFrame& set) REQUIRES(draws);
     void take_shadow() REQUIRES(draws);
     [[nodiscard]] float shadow_map_us() const REQUIRES(draws);
+    [[nodiscard]] float before_us(bool shadow_refreshed) const REQUIRES(draws);
     void begin_shadow(const Pose& pose, SubmitReport& report) REQUIRES(draws);
     void prepay_resolution(const prepare::PreparedFrame& set) REQUIRES(draws);
     void report_items(SubmitReport& report) const REQUIRES(draws);

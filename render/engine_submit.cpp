@@ -100,7 +100,7 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     if (limits.now_ns != nullptr) {
         // As it counts in the frame: several rasterisers share it.
         const float left_us = combine.left_us(p.so_far.submit_us, p.so_far.raster_us, p.in_flight_us);
-        check.in_flight_us = static_cast<double>(left_us + p.map_us) * correction.factor;
+        check.in_flight_us = static_cast<double>(left_us + p.before_us) * correction.factor;
         check.elapsed_us += check.in_flight_us;
     } else if (!device->charges())  // what a charging device has in flight is charged; for another one predictions count
         check.elapsed_us = check.predicted_so_far_us;
@@ -121,6 +121,12 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     return true;
 }
 
+/// Of what the driver has before the first slice: a slice with the shadow map, and what is behind everything.
+float Engine::Impl::before_us(bool shadow_refreshed) const {
+    const model::Viewport picture = model::viewport_of_step(options.device.viewport, model::resolution_step(drawn_resolution));
+    return (shadow_refreshed ? shadow_map_us() : 0.0F) + costs.behind_us(picture);
+}
+
 void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) {
     device->draws.plays();
     const model::FrameCombine combine = this->combine();
@@ -129,7 +135,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         rest_stand_in += {slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
     }
     bool full = true;
-    float in_flight_us = 0, map_us = report.shadow_refreshed ? shadow_map_us() : 0;  // the map is a slice before the first
+    float in_flight_us = 0, unfinished_us = before_us(report.shadow_refreshed);
     if (beside_us() > 0.0) device->charge_us(beside_us());
     const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
     for (const select::Slice& slice : plan.slices) {
@@ -137,13 +143,13 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         rest_stand_in.raster_us -= slice.stand_in_cost.raster_us;
         const model::ItemCost next{slice.cost.submit_us + costs.slice_us, slice.cost.raster_us};
         const model::ItemCost stand_in{slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
-        full = full && in_time({so_far, next, stand_in, rest_stand_in, in_flight_us, {}, map_us}, limits, start_us);
+        full = full && in_time({so_far, next, stand_in, rest_stand_in, in_flight_us, {}, unfinished_us}, limits, start_us);
         const model::ItemCost cost = draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
                                                      : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count),
                                                 report);
         so_far += {cost.submit_us + costs.slice_us, cost.raster_us};
         in_flight_us = cost.raster_us;
-        map_us = 0;
+        unfinished_us = 0;
         ++report.slices;
         if (!full) ++report.downgraded_slices;
     }

@@ -84,7 +84,10 @@ struct RestPicture::Frame {
     }
     /// Of a pass over the whole picture.
     [[nodiscard]] double pass_us() const { return static_cast<double>(scene.costs.rest_pass_us(scene.viewport)); }
+    /// Of the pass that begins a sample.
+    [[nodiscard]] double begin_us() const { return pass_us() + static_cast<double>(scene.costs.behind_us(scene.viewport)); }
     [[nodiscard]] bool pass_fits() const { return pass_us() * scale <= left_us(); }
+    [[nodiscard]] bool begin_fits() const { return begin_us() * scale <= left_us(); }
     /// A slice or a pass was handed to the driver: at most one is unfinished beside it.
     void drawn(double us) {
         scene.device.draws.plays();
@@ -191,10 +194,10 @@ bool RestPicture::advance(Frame& frame) {
         case Phase::sort:
             return sort(frame);
         case Phase::begin:
-            if (!frame.pass_fits()) return false;
+            if (!frame.begin_fits()) return false;
             frame.scene.device.set_filter(frame.scene.filter);
             frame.scene.device.begin_rest(pose_, rest_offset_px(sample_));
-            frame.drawn(frame.pass_us());
+            frame.drawn(frame.begin_us());
             next_ = 0;
             phase_ = Phase::opaque;
             return true;

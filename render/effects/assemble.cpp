@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "render/effects/modules.hpp"
 #include "render/effects/surface_light.hpp"
@@ -196,6 +197,7 @@ gl::ProgramSource background_program(const EffectModule& module) {
 }  // namespace
 
 gl::ProgramSource assemble_program(model::EffectMask mask) {
+    static_assert(std::has_single_bit(model::background_effects), "a device draws one program behind everything");
     for (const EffectModule& module : all_effects())
         if (mask == module.bit && (mask & model::background_effects) != 0) return background_program(module);
     mask &= ~model::background_effects;

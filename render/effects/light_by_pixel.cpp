@@ -14,7 +14,7 @@ constexpr EffectModule light_by_pixel{
     .not_here = "no material here is lit by the pixel",
     .called_for = [](const MaterialFacts& material) { return material.lit && material.light_by_pixel; },
     .priced_on = model::effect_texture | model::effect_sun,
-    .usual_price = {model::effect_light_by_pixel, 3.0F, 7.0F, 1.2F},
+    .usual_price = {model::effect_light_by_pixel, 4.2F, 9.8F, 1.6F},
     .not_everywhere = "light by the pixel is another light than that at the vertices",
 };
 const EffectModule light_by_pixel_module = light_by_pixel;

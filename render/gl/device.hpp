@@ -97,6 +97,7 @@ struct NullOptions {
     std::uint64_t seed = 1;
     double enlarge_us = 0;    ///< charged for a frame below full resolution
     double rest_pass_us = 0;  ///< charged for a pass over the picture at rest
+    double behind_us = 0;     ///< charged with the first pass, for what is behind everything
 };
 
 /// What a device can do at rest: nothing, a second picture, or also the mean of several samples.

@@ -194,6 +194,7 @@ void NullDevice::begin_rest(const Pose& pose, const dvec2&) {
     eye_ = pose.position;
     scale_ = model::make_view_scale(pose, options_.viewport);
     charge_pass();
+    before_us_ += null_.cost_scale * factor_ * null_.behind_us;
 }
 
 /// A slice of its own, as the engine predicts it. Items with blended parts are charged both times.

@@ -64,7 +64,9 @@ void clean_mesh(Scene& scene, Mesh& mesh) {
     for (Primitive& primitive : mesh.primitives) {
         repair(primitive, counts);
         if (primitive.material >= scene.materials.size()) primitive.material = 0;
-        if (!scene.materials.empty() && scene.materials[primitive.material].light == LightPlace::flat) make_flat(primitive);
+        if (scene.materials.empty()) continue;
+        const Material& material = scene.materials[primitive.material];
+        if (material.light == LightPlace::flat && !material.unlit) make_flat(primitive);
     }
     report_repairs(counts, mesh.name, scene.warnings, mesh.lacks);
     std::erase_if(mesh.primitives, [](const Primitive& p) { return p.indices.empty(); });

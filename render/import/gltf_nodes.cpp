@@ -240,7 +240,7 @@ void read_sky(const tinygltf::Scene& from, Scene& scene) {
     if (value.IsBool())
         scene.sky = value.Get<bool>();
     else
-        scene.warnings.push_back("Scene: the extra 'sky' is not true or false; there is no sky");
+        scene.warnings.push_back("Scene: the extra 'sky' is left out. Set it to true or false, or remove it");
 }
 
 std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {

@@ -70,8 +70,10 @@ private:
     FrameSample predict(const TownView& view, const model::ItemCosts& costs) const;
     Result<void> samples(Calibration& out);
     Result<void> filter(Calibration& out);
+    void background(Calibration& out);
     Result<std::unique_ptr<gl::Device>> open_other(const gl::DeviceOptions& how);
     std::vector<WorkPair> compare(gl::Device& other, bool textured);
+    std::vector<EmptyPair> empty_frames(gl::Device& other);
 
     gl::Device& device_;
     const CalibrateOptions& options_;
@@ -206,6 +208,36 @@ std::vector<WorkPair> Run::compare(gl::Device& other, bool textured) {
     return pairs;
 }
 
+/// Frames without items by both devices, in turns.
+std::vector<EmptyPair> Run::empty_frames(gl::Device& other) {
+    const auto empty_us = [&](gl::Device& device) {
+        device.bind();
+        run_frame(device, clocks_, Pose{}, {}, 1);
+        const double us = run_frame(device, clocks_, Pose{}, {}, 1).wall_us;
+        device.release();
+        return us;
+    };
+    std::vector<EmptyPair> pairs;
+    for (int i = 0; i < 10 * repeats(); ++i) {
+        const double plain_us = empty_us(device_);
+        pairs.push_back({plain_us, empty_us(other)});
+    }
+    return pairs;
+}
+
+/// What is behind everything adds to an empty frame. Where no second device opens, the constant stays.
+void Run::background(Calibration& out) {
+    if (options_.device.kind == gl::BackendKind::null) return;  // charges what the table says
+    const std::vector<model::EffectFinding> before = scene_.model.effects;
+    scene_.model.effects.push_back({.bit = model::effect_sky, .called_for = true});
+    auto other = open_other(options_.device);
+    scene_.model.effects = before;
+    if (!other) return;
+    const std::optional<float> ns = enlarge_ns_of(empty_frames(**other), options_.device.viewport);
+    out.costs.background_measured = ns.has_value();
+    if (ns) out.costs.background_ns_per_pixel = *ns;
+}
+
 /// What each sample of a pixel beyond the first adds: to items, and to an empty frame. A driver without keeps the constants.
 Result<void> Run::samples(Calibration& out) {
     gl::DeviceOptions how = options_.device;
@@ -215,19 +247,7 @@ Result<void> Run::samples(Calibration& out) {
     const auto more = static_cast<float>((*other)->samples() - 1);
     if (!(more > 0)) return {};
     const auto factor = dearer_factor_of(compare(**other, false), 1.0 + max_sample_share * static_cast<double>(more));
-    std::vector<EmptyPair> pairs;
-    const auto empty_us = [&](gl::Device& device) {
-        device.bind();
-        run_frame(device, clocks_, Pose{}, {}, 1);
-        const double us = run_frame(device, clocks_, Pose{}, {}, 1).wall_us;
-        device.release();
-        return us;
-    };
-    for (int i = 0; i < 10 * repeats(); ++i) {
-        const double plain_us = empty_us(device_);
-        pairs.push_back({plain_us, empty_us(**other)});
-    }
-    const std::optional<float> pass_ns = enlarge_ns_of(pairs, options_.device.viewport);
+    const std::optional<float> pass_ns = enlarge_ns_of(empty_frames(**other), options_.device.viewport);
     if (!factor || !pass_ns) return {};
     out.costs.sample_share = (*factor - 1) / more;
     out.costs.sample_pass_ns_per_pixel = std::min(*pass_ns / more, static_cast<float>(max_sample_pass_ns));
@@ -257,6 +277,9 @@ Result<void> Run::levers(Calibration& out) {
     if (progress_.stopped()) return stopped;
     progress_.update("filter", 0.5);
     if (auto done = filter(out); !done) return done;
+    if (progress_.stopped()) return stopped;
+    progress_.update("background", 0.9);
+    background(out);
     device_.bind();
     return {};
 }

@@ -49,7 +49,7 @@ struct CalibrateOptions {
 
 Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& progress);
 
-/// Largest time of enlarging in a table, ns for a pixel of the whole picture.
+/// Largest time of enlarging, or of what is behind everything, in a table: ns for a pixel of the whole picture.
 constexpr double max_enlarge_ns = 100;
 /// Largest CostModel::ns_per_pixel.
 constexpr double max_ns_per_pixel = 100;

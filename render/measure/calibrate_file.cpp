@@ -73,6 +73,8 @@ std::string body_of(const model::CostModel& costs) {
     if (costs.samples_measured)
         text += fmt::format("sample_share = {:.9g}\nsample_pass_ns_per_pixel = {:.9g}\n", static_cast<double>(costs.sample_share),
                             static_cast<double>(costs.sample_pass_ns_per_pixel));
+    if (costs.background_measured)
+        text += fmt::format("background_ns_per_pixel = {:.9g}\n", static_cast<double>(costs.background_ns_per_pixel));
     if (costs.trilinear_measured) text += fmt::format("trilinear_factor = {:.9g}\n", static_cast<double>(costs.trilinear_factor));
     if (costs.ns_per_pixel > 0) text += fmt::format("ns_per_pixel = {:.9g}\n", static_cast<double>(costs.ns_per_pixel));
     if (costs.filter != rt::TextureFilter::automatic)
@@ -147,6 +149,7 @@ void read_levers(TableReader& top, model::CostModel& costs) {
         top.choice("filter", filters, filter);
         costs.filter = filter == 0 ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear;
     }
+    costs.background_measured = read_measured(top, "background_ns_per_pixel", 0, max_enlarge_ns, costs.background_ns_per_pixel);
     costs.trilinear_measured = read_measured(top, "trilinear_factor", 1, max_trilinear_factor, costs.trilinear_factor);
 }
 

@@ -109,7 +109,7 @@ CostModel at_quality(CostModel costs, const Quality& quality) {
 
 CostModel with_background(CostModel costs) {
     costs.drawn_pass_ns_per_pixel += costs.background_ns_per_pixel;
-    costs.rest_pass_ns_per_pixel += costs.background_ns_per_pixel;
+    costs.behind_ns_per_pixel = costs.background_ns_per_pixel;
     return costs;
 }
 

@@ -78,8 +78,8 @@ struct CostModel {
     /// Of the picture as it is drawn, in every frame: with_background() and at_quality() find it. No file holds it.
     float drawn_pass_ns_per_pixel = 0;
     float rest_pass_ns_per_pixel = 8;  ///< of one pass over the picture at rest; typical, no calibration measures it
-    /// Of what is behind everything (background_effects), in models that call for it; typical, no calibration measures it.
-    float background_ns_per_pixel = 3.7F;
+    float background_ns_per_pixel = 3.7F;  ///< of what is behind everything (background_effects), in models that call for it
+    float behind_ns_per_pixel = 0;         ///< the same in this model's pictures: with_background() sets it. No file holds it
     /// Six times the mean squared error (0..1) of full detail that is enlarged. Typical of five scenes; a fit measures its model.
     BlurLoss blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
     rt::TextureFilter filter = rt::TextureFilter::automatic;  ///< that it was measured by; automatic: as the device chooses
@@ -88,7 +88,7 @@ struct CostModel {
     bool calibrated = false;  ///< false: built-in defaults
     /// False: the constants above, which no file holds.
     bool enlarge_measured = false, blur_measured = false, samples_measured = false, trilinear_measured = false,
-         prices_measured = false;
+         background_measured = false, prices_measured = false;
 
     /// Interpolated. Arguments below 1 count as 1; beyond the grid the cost is extrapolated linearly. Never negative. A NaN
     /// argument gives the largest cell.
@@ -105,6 +105,10 @@ struct CostModel {
     /// Time to clear, copy, add or divide the picture at rest, us.
     [[nodiscard]] float rest_pass_us(const Viewport& picture) const {
         return 1e-3F * rest_pass_ns_per_pixel * static_cast<float>(picture.width) * static_cast<float>(picture.height);
+    }
+    /// Time of what is behind everything, us; 0 where there is nothing.
+    [[nodiscard]] float behind_us(const Viewport& drawn) const {
+        return 1e-3F * behind_ns_per_pixel * static_cast<float>(drawn.width) * static_cast<float>(drawn.height);
     }
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <vector>
 
 #include "render/bake/bake.hpp"
@@ -102,7 +103,7 @@ TEST(Findings, OfABakedModelCountItsFullDetail) {
 }
 
 TEST(Findings, OfASkyNameWhoAsksForItAndAFileWithoutItHasNone) {
-    constexpr std::size_t sky = 11;  // its bit
+    constexpr std::size_t sky = std::countr_zero(model::effect_sky + 0U);
     importer::Scene scene;
     scene.materials.emplace_back();
     bake::place(scene, bake::add_mesh(scene, bake::ball(8, 1), "ball"), dvec3(0));

@@ -40,7 +40,7 @@ TEST(Programs, hold_the_code_of_their_effects_and_of_no_other) {
 bool holds(const std::string& text, std::string_view piece) { return text.find(piece) != std::string::npos; }
 
 TEST(Programs, have_light_at_the_vertices_or_in_the_pixels_and_never_in_both) {
-    for (model::EffectMask mask = 0; mask < 1U << model::effect_count; ++mask) {
+    for (const model::EffectMask mask : program_masks()) {
         const auto source = effects::assemble_program(mask);
         const bool by_pixel = (mask & model::effect_light_by_pixel) != 0;
         bool has_light = (mask & model::effect_moving_shadow) != 0;

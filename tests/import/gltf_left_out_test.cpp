@@ -54,9 +54,8 @@ TEST(GltfLeftOut, SoundIsNamedByItsExtension) {
     TriangleGltf none;
     none.more = R"(,"extensionsUsed":["KHR_texture_transform","VENDOR_audio"],"extensions":7)";
     const auto odd = import_bytes(none.file());
-    if (odd.ok()) {
-        EXPECT_TRUE(odd->warnings.empty()) << odd->warnings[0];
-    }
+    ASSERT_TRUE(odd.ok());
+    EXPECT_TRUE(odd->warnings.empty()) << odd->warnings[0];
 }
 
 }  // namespace

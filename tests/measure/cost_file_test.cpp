@@ -82,6 +82,18 @@ TEST_F(CostFile, holds_samples_and_the_filter_where_they_were_measured) {
     EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_));
 }
 
+TEST_F(CostFile, holds_the_price_of_a_sky_where_it_was_measured) {
+    costs_.background_ns_per_pixel = 0.12345678F;
+    EXPECT_EQ(read_text(file_).value().find("background"), std::string::npos);
+    costs_.background_measured = true;
+    ASSERT_TRUE(measure::write_costs(file_, costs_).ok());
+    const auto read = measure::read_costs(file_, costs_.machine);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_EQ(read->background_ns_per_pixel, costs_.background_ns_per_pixel);
+    EXPECT_TRUE(read->background_measured);
+    EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_));
+}
+
 TEST_F(CostFile, names_the_filter_that_it_was_measured_by) {
     EXPECT_EQ(read_text(file_).value().find("filter"), std::string::npos);
     EXPECT_EQ(measure::read_costs(file_, "")->filter, rt::TextureFilter::automatic) << "a table of before does not know";

@@ -84,6 +84,7 @@ nlohmann::ordered_json to_json(const measure::Calibration& c, const std::string&
              {{"measured", c.costs.samples_measured},
               {"share_of_raster_time", c.costs.sample_share},
               {"pass_ns_per_pixel", c.costs.sample_pass_ns_per_pixel}}},
+            {"background", {{"measured", c.costs.background_measured}, {"ns_per_pixel", c.costs.background_ns_per_pixel}}},
             {"trilinear", {{"measured", c.costs.trilinear_measured}, {"factor", c.costs.trilinear_factor}}},
             {"frame_error", {{"p50", c.frame_error_p50}, {"p90", c.frame_error_p90}, {"p99", c.frame_error_p99}}},
             {"timer_query",
@@ -346,6 +347,8 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     fmt::print("  each sample of a pixel beyond the first: {:.0f} % of the raster time, and {:.2f} ns a pixel{}\n",
                100 * c->costs.sample_share, c->costs.sample_pass_ns_per_pixel,
                c->costs.samples_measured ? "" : ", built-in figures");
+    fmt::print("  a sky: {:.2f} ns a pixel{}\n", c->costs.background_ns_per_pixel,
+               c->costs.background_measured ? "" : ", a built-in figure");
     fmt::print("  trilinear textures: x{:.2f} of the raster time{}\n", c->costs.trilinear_factor,
                c->costs.trilinear_measured ? "" : ", a built-in figure");
     fmt::print("  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; the budget spends x{:.2f}\n",
