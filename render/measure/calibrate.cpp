@@ -229,7 +229,10 @@ std::vector<EmptyPair> Run::empty_frames(gl::Device& other) {
 void Run::background(Calibration& out) {
     if (options_.device.kind == gl::BackendKind::null) return;  // charges what the table says
     const std::vector<model::EffectFinding> before = scene_.model.effects;
-    scene_.model.effects.push_back({.bit = model::effect_sky, .called_for = true});
+    model::EffectFinding sky;
+    sky.bit = model::effect_sky;
+    sky.called_for = true;
+    scene_.model.effects.push_back(sky);
     auto other = open_other(options_.device);
     scene_.model.effects = before;
     if (!other) return;
