@@ -194,6 +194,20 @@ TEST(Boxes, KeepTheShareThatIsCoveredOfThinThings) {
     EXPECT_LT(opaque, 28U * 28 / 4);
 }
 
+TEST(Boxes, AFaceThatEndsAtASharpEdgeDoesNotVanish) {
+    for (const float width : {1.0F, 1.1F, 1.3F, 1.5F, 1.7F, 1.9F}) {
+        for (const int texels : {3, 7, 10, 14, 19, 25}) {
+            model::Model m;
+            const float to = width * static_cast<float>(texels) / 28;
+            add_rectangle(m, {0, 0, 1}, {to, 0, 0}, {0, 1, 0}, {1, 1, 1, 1});
+            make_leaf(m);
+            m.nodes[0].box.grow(dvec3(0, 0, 0));
+            m.nodes[0].box.grow(dvec3(static_cast<double>(width), 1, 1));
+            EXPECT_GT(boxes_of(m)[0].faces[5].covered, 0.5F * to / width) << width << " m, " << texels << " texels";
+        }
+    }
+}
+
 TEST(Boxes, OfVeryLongThingsAreLeftOut) {
     const model::Model m = painted_block({400, 0.5, 0.5});
     EXPECT_EQ(boxes_of(m, 28)[0].shown_faces(), 6U);
