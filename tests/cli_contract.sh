@@ -226,7 +226,11 @@ expect 1 '^surefoot: --strict.*no cost table.*calibrate' walk f.walk --strict --
 # The image cache, counted.
 json cache-study flat --frames 6 --birds-eye sheet.png
 grep -q '"boxes": 341' out && grep -q '"not_replaceable"' out || complain "cache-study lacks its counts: $(head -c 300 out)"
-grep -q '"ms"' out && complain "cache-study has times of what it does not draw"
+grep -q '"ms": null' out && grep -q '"ms_reason": "Nothing is drawn' out || complain "cache-study does not say why it has no times"
+grep -q '"ms": [^n]' out && complain "cache-study has times of what it does not draw"
+grep -q '"walked_m": [1-9]' out && grep -q '"max_refreshes_of_a_frame"' out || complain "cache-study lacks its way: $(head -c 300 out)"
+json cache-study flat --frames 1
+grep -q '"shape_as_published": null' out || complain "cache-study judges one frame"
 head -c 4 sheet.png | grep -q PNG || complain "the bird's-eye view is no picture"
 refuse 'garden.*flat, forest, zoom, room' cache-study garden
 refuse '--frames.*0.* 1 to' cache-study flat --frames 0

@@ -31,7 +31,7 @@ ConicRange cone_within(const ConicRange& a, const ConicRange& b) {
     const double from_a = 0.5 * (a.alpha_rad - b.alpha_rad + apart);
     dvec3 across = b.direction - glm::dot(a.direction, b.direction) * a.direction;
     const double length = glm::length(across);
-    if (!(length > 1e-6)) {  // opposite directions: no plane holds both
+    if (!(length > 1e-6)) {  // equal or opposite: many planes hold both, and none of them is chosen
         cone.alpha_rad = -1;
         return cone;
     }

@@ -37,8 +37,8 @@ ConicRange sphere_range(const dvec3& centre, double radius_m);
 ConicRange enclosing_sphere(const ConicRange& range);
 
 /// A range in which both ranges hold; never a point that one of them has not.
-/// Exact where both have one centre and their cones nest, and where one range lies in the other. Of two other cones with one
-/// centre: the largest cone within both, if `eye` is in it. Else the largest sphere round `eye` within both.
+/// Exact where both have one centre and their cones nest, and where the enclosing sphere of one range lies in the other. Of two
+/// other cones with one centre: the largest cone within both, if `eye` is in it. Else the largest sphere round `eye` within both.
 /// Empty where `eye` is not in both, unless the result is exact.
 ConicRange intersection(const ConicRange& a, const ConicRange& b, const dvec3& eye);
 

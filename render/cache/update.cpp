@@ -1,10 +1,15 @@
 // The update and draw recursions of the image cache, as a plan.
 #include "render/cache/update.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
+
+#include "rt/base/check.hpp"
 
 namespace surefoot::cache {
 
@@ -90,8 +95,19 @@ private:
             plan_.uses[i] = BoxUse::not_replaceable;
             ++plan_.counts.not_replaceable;
         } else {
-            for (Index child = 0; child < box.child_count; ++child) draw(box.first_child + child);
+            draw_back_to_front(box.first_child, box.child_count);
         }
+    }
+
+    /// Boxes lie in the order of their splits: the upper half of them beyond the plane of the first one, and so on.
+    void draw_back_to_front(Index first, std::uint32_t count) {
+        if (count == 1) return draw(first);
+        const Index beyond = first + count / 2;
+        const dvec3 &low = tree_.boxes[first].box.min, &high = tree_.boxes[beyond].box.min;
+        const int axis = high.x > low.x ? 0 : high.y > low.y ? 1 : 2;
+        const bool low_is_farther = view_.eye[axis] >= high[axis];
+        draw_back_to_front(low_is_farther ? first : beyond, count / 2);
+        draw_back_to_front(low_is_farther ? beyond : first, count / 2);
     }
 
     /// Refreshes a picture whose error is over max_error. Whether the box then has one with at most that.
@@ -211,6 +227,21 @@ private:
 
 }  // namespace
 
+Result<void> check_cache_options(const CacheOptions& options) {
+    const auto is_side = [](std::uint32_t texels) { return std::has_single_bit(texels) && texels <= max_side_texels; };
+    if (!is_side(options.min_texels) || !is_side(options.max_texels))
+        return Error{"cache",
+                     fmt::format("Pictures cannot have sides of {} to {} texels", options.min_texels, options.max_texels),
+                     fmt::format("Choose powers of two from 1 to {}", max_side_texels), ErrorKind::misuse};
+    if (options.max_generation > max_levels)
+        return Error{"cache", fmt::format("{} generations of pictures are out of range", options.max_generation),
+                     fmt::format("Choose 0 to {}", max_levels), ErrorKind::misuse};
+    if (!(options.child_share > 0 && options.child_share <= 1))
+        return Error{"cache", fmt::format("Children cannot have the share {} of an error", options.child_share),
+                     "Choose a share above 0, up to 1", ErrorKind::misuse};
+    return {};
+}
+
 CacheState empty_state(const BoxTree& tree) {
     CacheState state;
     state.pictures.resize(tree.boxes.size());
@@ -224,6 +255,8 @@ void evaluate_boxes(const BoxTree& tree, const CacheView& view, const CacheOptio
         const CacheBox& box = tree.boxes[i];
         BoxFacts& of = facts[i];
         of = {};
+        of.eye = view.eye;
+        of.frame = view.frame;
         of.error_rad = unusable;
         if (box.primitive_count == 0) continue;
         of.in_view = view.frustum == nullptr || model::visible(*view.frustum, box.box);
@@ -234,6 +267,12 @@ void evaluate_boxes(const BoxTree& tree, const CacheView& view, const CacheOptio
 
 CachePlan plan_frame(const BoxTree& tree, const CacheView& view, const CacheOptions& options, const CacheState& state,
                      std::span<const BoxFacts> facts) {
+    CHECK(check_cache_options(options), "The options of the cache are in range");
+    CHECK(facts.size() == tree.boxes.size(), "Every box has its facts");
+    for (const BoxFacts& of : facts) {
+        const bool no_number = std::isnan(view.eye.x + view.eye.y + view.eye.z);
+        CHECK(of.frame == view.frame && (of.eye == view.eye || no_number), "Facts are of the frame and the eye of the plan");
+    }
     return FramePlanner(tree, view, options, state, facts).run();
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "tools/cache_study/study.hpp"
 #include "tools/cache_study/study_scenes.hpp"
@@ -45,16 +46,65 @@ TEST(CacheStudy, OfThePlainHasTheShapeOfFigure6) {
     }
 }
 
-TEST(CacheStudy, MeasuresNoMoreThanIsPromisedAndMoreByThePublishedTests) {
+TEST(CacheStudy, TracesNoMoreThanIsPromisedAndMoreByThePublishedTests) {
+    const cache::PixelAngles pixels = cache::pixel_angles(Pose{}, {320, 240});
     for (const char* name : {"flat", "forest", "zoom", "room"}) {
         const Study study = study_of(name);
         for (const StudyFrame& frame : study.corrected) {
             EXPECT_LE(frame.bound_px, 1) << name;
-            EXPECT_LE(frame.measured_px, frame.bound_px + 1e-9) << name;
+            EXPECT_LE(frame.traced_px, frame.bound_px + 1e-9) << name;
         }
-        EXPECT_GT(sums_after_first(study.corrected).measured_px, 0.3) << name << ": the bound is far from what happens";
-        EXPECT_GT(sums_after_first(study.published).measured_px, 1.2) << name;
+        EXPECT_GT(sums_after_first(study.corrected).traced_px, 0.3) << name << ": the bound is far from what happens";
+        EXPECT_GT(sums_after_first(study.published).traced_px, pixels.mean_rad / pixels.smallest_rad)
+            << name << ": beyond what those tests allow";
     }
+}
+
+TEST(CacheStudy, WalksThroughTheScene) {
+    const auto walk = [](const char* name, std::uint32_t frames) {
+        auto scene = make_study(name, frames);
+        EXPECT_TRUE(scene);
+        return std::pair(scene->tree.boxes.front().box, *std::move(scene));
+    };
+    const auto [plain, flat] = walk("flat", 120);
+    EXPECT_NEAR(flat.walked_m, 0.8 * 512 * std::sqrt(2.0), 1e-6);
+    EXPECT_NEAR(flat.step_m * 119, flat.walked_m, 1e-9);
+    EXPECT_NEAR(walk("flat", 1200).second.walked_m, flat.walked_m, 1e-9) << "the same way in smaller steps";
+    const auto [wood, zoom] = walk("zoom", 100);
+    EXPECT_NEAR(zoom.eyes.front().x, wood.min.x, 1e-9);
+    EXPECT_NEAR(zoom.eyes.back().x, wood.centre().x, 1e-9);
+    EXPECT_NEAR(zoom.eyes.back().z, wood.centre().z, 1e-9);
+    const auto [walls, room] = walk("room", 100);
+    for (const dvec3& eye : room.eyes) EXPECT_EQ(walls.distance(eye), 0) << "it stands inside";
+    EXPECT_EQ(walk("room", 1).second.walked_m, 0);
+}
+
+TEST(CacheStudy, CountsTheTrianglesAndTexelsOfAFrame) {
+    const std::vector<cache::Triangle> scene = {{dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)}, {dvec3(0), dvec3(1), dvec3(0, 1, 0)}};
+    const auto tree = cache::make_boxes(scene, {.levels = 1});
+    ASSERT_TRUE(tree);
+    cache::CacheView view;
+    view.pixels = cache::pixel_angles(Pose{}, {320, 240});
+    view.eye = {0.5, 0.5, 30};
+    const cache::CachePlan first = cache::plan_frame(*tree, view, {}, cache::empty_state(*tree));
+    EXPECT_EQ(work_of(*tree, first).triangles, 2U);
+    EXPECT_EQ(work_of(*tree, first).texels, 64U * 64U);
+    ++view.frame;
+    const cache::CachePlan again = cache::plan_frame(*tree, view, {}, first.after);
+    EXPECT_EQ(work_of(*tree, again).triangles, 0U) << "its picture serves again";
+    EXPECT_EQ(work_of(*tree, again).texels, 0U);
+    view.eye.z = 1.2;
+    ++view.frame;
+    const cache::CachePlan near = cache::plan_frame(*tree, view, {}, again.after);
+    EXPECT_EQ(work_of(*tree, near).triangles, 2U) << "too near for a picture";
+    EXPECT_EQ(work_of(*tree, near).texels, 0U);
+}
+
+TEST(CacheStudy, OfOneFrameHasNoLaterFrames) {
+    const Study study = study_of("flat", 1, true);
+    EXPECT_EQ(sums_after_first(study.corrected).frames, 0U);
+    EXPECT_EQ(study.sheet.views.size(), 1U);
+    EXPECT_EQ(study_of("flat", 30, true).sheet.views.size(), max_views);
 }
 
 TEST(CacheStudy, IsTheSameTwice) {
@@ -63,7 +113,8 @@ TEST(CacheStudy, IsTheSameTwice) {
         EXPECT_EQ(a.corrected[i].counts.fresh, b.corrected[i].counts.fresh);
         EXPECT_EQ(a.corrected[i].counts.reused, b.corrected[i].counts.reused);
         EXPECT_EQ(a.corrected[i].bytes, b.corrected[i].bytes);
-        EXPECT_EQ(a.corrected[i].measured_px, b.corrected[i].measured_px);
+        EXPECT_EQ(a.corrected[i].traced_px, b.corrected[i].traced_px);
+        EXPECT_EQ(a.corrected[i].work.triangles, b.corrected[i].work.triangles);
     }
 }
 

@@ -66,17 +66,20 @@ void expect_consistent(const BoxTree& tree, const CacheView& view, const CacheOp
     for (const Picture& picture : plan.after.pictures) bytes += bytes_of(picture.texels);
     EXPECT_EQ(plan.after.bytes, bytes);
     EXPECT_LE(bytes, options.max_bytes);
-    std::vector<bool> made(tree.boxes.size());
+    std::vector<bool> made(tree.boxes.size()), drawn_from(tree.boxes.size());
     CacheCounts counts;
     for (const Refresh& refresh : plan.refreshes) {
         EXPECT_FALSE(made[refresh.box]) << "twice in a frame";
+        EXPECT_FALSE(drawn_from[refresh.box]) << "made after it was drawn into its parent's picture";
         made[refresh.box] = true;
         ++(refresh.from_children ? counts.combined : counts.fresh);
         const CacheBox& box = tree.boxes[refresh.box];
         EXPECT_EQ(plan.after.pictures[refresh.box].frame, view.frame);
         EXPECT_LE(plan.after.pictures[refresh.box].generation, options.max_generation);
-        for (Index child = box.first_child; refresh.from_children && child < box.first_child + box.child_count; ++child)
+        for (Index child = box.first_child; refresh.from_children && child < box.first_child + box.child_count; ++child) {
             EXPECT_TRUE(tree.boxes[child].primitive_count == 0 || plan.after.pictures[child].texels > 0);
+            drawn_from[child] = true;
+        }
     }
     EXPECT_EQ(counts.fresh, plan.counts.fresh);
     EXPECT_EQ(counts.combined, plan.counts.combined);
@@ -158,10 +161,13 @@ TEST(CacheFrame, AnEyeThatStaysOrTurnsRefreshesNothing) {
 TEST(CacheFrame, ThePlanIsTheSameAtAnyNumberOfWorkers) {
     const BoxTree tree = tree_of(plain_with_hole());
     const auto count = static_cast<Index>(tree.boxes.size());
-    const CacheOptions options;
+    CacheOptions options;
+    options.max_bytes = 120 * bytes_of(64);  // some are dropped
     CacheState state = empty_state(tree);
+    std::size_t dropped = 0;
+    double inherited = 0;
     for (std::uint32_t frame = 0; frame < 12; ++frame) {
-        const CacheView view = view_from({-20 + 0.7 * frame, 1, 30 + 0.2 * frame}, frame);
+        const CacheView view = view_from({-20 + 0.7 * frame + (frame < 6 ? 0 : 150), 1, 30 + 0.2 * frame}, frame);
         CachePlan alone = plan_frame(tree, view, options, state);
         for (const Index workers : {2U, 3U, 7U}) {
             std::vector<BoxFacts> facts(count);
@@ -174,12 +180,97 @@ TEST(CacheFrame, ThePlanIsTheSameAtAnyNumberOfWorkers) {
             const CachePlan plan = plan_frame(tree, view, options, state, facts);
             EXPECT_EQ(plan.uses, alone.uses);
             ASSERT_EQ(plan.refreshes.size(), alone.refreshes.size());
-            for (std::size_t i = 0; i < plan.refreshes.size(); ++i) EXPECT_EQ(plan.refreshes[i].box, alone.refreshes[i].box);
+            for (std::size_t i = 0; i < plan.refreshes.size(); ++i) {
+                EXPECT_EQ(plan.refreshes[i].box, alone.refreshes[i].box);
+                EXPECT_EQ(plan.refreshes[i].from_children, alone.refreshes[i].from_children);
+            }
+            ASSERT_EQ(plan.draws.size(), alone.draws.size());
+            for (std::size_t i = 0; i < plan.draws.size(); ++i) {
+                EXPECT_EQ(plan.draws[i].box, alone.draws[i].box);
+                EXPECT_EQ(plan.draws[i].picture, alone.draws[i].picture);
+            }
+            EXPECT_EQ(plan.dropped, alone.dropped);
+            for (Index i = 0; i < count; ++i) EXPECT_EQ(plan.after.pictures[i].inherited, alone.after.pictures[i].inherited);
             EXPECT_EQ(plan.after.bytes, alone.after.bytes);
             EXPECT_EQ(plan.max_error_rad, alone.max_error_rad);
         }
+        dropped += alone.dropped.size();
+        for (const Picture& picture : alone.after.pictures) inherited = std::max(inherited, picture.inherited);
         state = std::move(alone.after);
     }
+    EXPECT_GT(dropped, 0U);
+    EXPECT_GT(inherited, 0);
+}
+
+TEST(CacheFrameDeathTest, FactsOfAnotherEyeOrFrameEndTheProgram) {
+    const BoxTree tree = tree_of(plain_with_hole());
+    const auto count = static_cast<Index>(tree.boxes.size());
+    const CacheOptions options;
+    const CacheState state = empty_state(tree);
+    std::vector<BoxFacts> facts(count);
+    evaluate_boxes(tree, view_from({-20, 1, 30}, 3), options, state, 0, count, facts);
+    EXPECT_FALSE(plan_frame(tree, view_from({-20, 1, 30}, 3), options, state, facts).draws.empty());
+    EXPECT_DEATH(plan_frame(tree, view_from({-20, 1, 31}, 3), options, state, facts), "eye");
+    EXPECT_DEATH(plan_frame(tree, view_from({-20, 1, 30}, 4), options, state, facts), "eye");
+}
+
+/// Whether the way from a to b leads through the inside of a box.
+bool leads_through(const dvec3& a, const dvec3& b, const Box& box) {
+    double enter = 0, leave = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double way = b[axis] - a[axis], low = box.min[axis] + 1e-6 - a[axis], high = box.max[axis] - 1e-6 - a[axis];
+        if (std::abs(way) < 1e-12) {
+            if (low > 0 || high < 0) return false;
+            continue;
+        }
+        enter = std::max(enter, std::min(low / way, high / way));
+        leave = std::min(leave, std::max(low / way, high / way));
+    }
+    return enter < leave;
+}
+
+TEST(CacheFrame, DrawsBackToFront) {
+    Random random(11);
+    std::vector<Triangle> scattered;
+    for (int i = 0; i < 400; ++i) {
+        const dvec3 at = any_in(random, dvec3(0), dvec3(90, 40, 60));
+        scattered.push_back({at, at + dvec3(1, 0, 1), at + dvec3(0, 1, 0)});
+    }
+    int behind = 0;
+    for (const BoxTree& tree : {tree_of(plain_with_hole()), tree_of(scattered, 8, 3)}) {
+        const dvec3 margin(20, 20, 20);
+        for (int run = 0; run < 20; ++run) {
+            const Box& all = tree.boxes.front().box;
+            const CacheView view = view_from(any_in(random, all.min - margin, all.max + margin), 0);
+            const CachePlan plan = plan_frame(tree, view, {}, empty_state(tree));
+            for (std::size_t later = 0; later < plan.draws.size(); ++later) {
+                const Box& box = tree.boxes[plan.draws[later].box].box;
+                const dvec3 point = any_in(random, box.min, box.max);
+                for (std::size_t other = 0; other < plan.draws.size(); ++other) {
+                    if (other == later || !leads_through(view.eye, point, tree.boxes[plan.draws[other].box].box)) continue;
+                    ++behind;
+                    ASSERT_GT(other, later) << "what hides it is drawn before it";
+                }
+            }
+        }
+    }
+    EXPECT_GT(behind, 1000);
+}
+
+TEST(CacheFrame, OptionsOutOfRangeAreRefused) {
+    EXPECT_TRUE(check_cache_options({}));
+    const auto refused = [](auto change) {
+        CacheOptions options;
+        change(options);
+        const auto ok = check_cache_options(options);
+        return !ok && ok.error().kind == ErrorKind::misuse;
+    };
+    EXPECT_TRUE(refused([](CacheOptions& o) { o.max_generation = 0xffffffffU; }));
+    EXPECT_TRUE(refused([](CacheOptions& o) { o.max_texels = 0; }));
+    EXPECT_TRUE(refused([](CacheOptions& o) { o.min_texels = 65; }));
+    EXPECT_TRUE(refused([](CacheOptions& o) { o.max_texels = 1U << 31U; }));
+    for (const double share : {0.0, 1.1, -1.0, static_cast<double>(NAN)})
+        EXPECT_TRUE(refused([&](CacheOptions& o) { o.child_share = share; })) << share;
 }
 
 /// Most pictures that a frame of a straight walk makes after the first.
@@ -243,16 +334,33 @@ TEST(CacheFrame, ByThePublishedRulesPicturesOfPicturesForgetTheirErrors) {
     CacheOptions options;
     options.rules = ValidityRules::published;
     CacheState state = empty_state(tree);
-    double max_error = 0;
+    std::vector<Picture> remembered(tree.boxes.size());  // the same pictures, with what their children lacked
+    double max_forgotten = 0, max_error = 0;
     for (std::uint32_t frame = 0; frame < 120; ++frame) {
         const CacheView view = view_from({-40 + 0.02 * frame, 1, -20 + 0.03 * frame}, frame);
         CachePlan plan = plan_frame(tree, view, options, state);
         expect_whole(tree, view, plan);
-        for (const BoxDraw& draw : plan.draws)
-            if (draw.picture) max_error = std::max(max_error, picture_errors(plan.after.pictures[draw.box], view.eye).total());
+        for (const Refresh& refresh : plan.refreshes) {
+            const CacheBox& box = tree.boxes[refresh.box];
+            Picture& picture = remembered[refresh.box];
+            picture = plan.after.pictures[refresh.box];
+            EXPECT_EQ(picture.inherited, 0);
+            for (Index child = box.first_child; refresh.from_children && child < box.first_child + box.child_count; ++child) {
+                if (tree.boxes[child].primitive_count == 0) continue;
+                const double error = picture_errors(remembered[child], view.eye).total();
+                picture.inherited = std::max(picture.inherited, inherited_error(error, picture.tangent));
+            }
+        }
+        for (const BoxDraw& draw : plan.draws) {
+            if (!draw.picture) continue;
+            max_forgotten = std::max(max_forgotten, picture_errors(remembered[draw.box], view.eye).inherited);
+            max_error = std::max(max_error, picture_errors(remembered[draw.box], view.eye).total());
+        }
         state = std::move(plan.after);
     }
-    EXPECT_GT(max_error, 1.2 * view_from({}, 0).pixels.smallest_rad);
+    const PixelAngles pixels = view_from({}, 0).pixels;
+    EXPECT_GT(max_forgotten, 0.5 * pixels.mean_rad);
+    EXPECT_GT(max_error, pixels.mean_rad) << "over what these rules allow";
 }
 
 TEST(CacheFrame, OneTriangleAndOneBoxAreDrawn) {

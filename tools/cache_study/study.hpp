@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,26 +22,38 @@ struct StudyRequest {
     bool pictures = false;  ///< a sheet of bird's-eye views
 };
 
+/// What a frame would draw, and what of it is new.
+struct DrawWork {
+    std::uint64_t triangles = 0;  ///< for new pictures, and of leaves that are drawn as triangles; once for every box
+    std::uint64_t texels = 0;     ///< of new pictures, combined ones too
+};
+DrawWork work_of(const cache::BoxTree& tree, const cache::CachePlan& plan);
+
 /// A frame of the cache. Errors are of what is drawn as pictures, in pixels at the corner of the view.
 struct StudyFrame {
     cache::CacheCounts counts;
     std::uint64_t bytes = 0;  ///< of all pictures that are held
     double bound_px = 0;      ///< what the cache promises; 0 by the published rules, which know no sum
-    double measured_px = 0;   ///< of points that are followed through the pictures
+    double traced_px = 0;     ///< of points that are followed through the pictures
+    DrawWork work;
 };
 
-/// Frames after the first one, summed.
+/// Frames, summed.
 struct StudySums {
     std::uint64_t fresh = 0, combined = 0, reused = 0, not_replaceable = 0;
-    std::uint32_t max_fresh = 0;           ///< of one frame
-    double bound_px = 0, measured_px = 0;  ///< of one frame
+    std::uint32_t max_fresh = 0, max_refreshes = 0;  ///< of one frame
+    double bound_px = 0, traced_px = 0;              ///< of one frame
+    DrawWork work;
+    std::uint64_t frames = 0;
 };
+StudySums sums_of(std::span<const StudyFrame> frames);
 StudySums sums_after_first(const std::vector<StudyFrame>& frames);
 
 /// Both rules walk the same way through the same boxes.
 struct Study {
     std::uint64_t triangles = 0;
     std::uint32_t boxes = 0, filled_boxes = 0;  ///< filled: with triangles
+    double walked_m = 0, step_m = 0;            ///< in all, and from a frame to the next
     std::vector<StudyFrame> corrected, published;
     ViewSheet sheet;  ///< empty unless StudyRequest::pictures
 };
@@ -48,7 +61,8 @@ struct Study {
 /// Errors: unknown study, no room for the boxes, stopped.
 Result<Study> run_study(const StudyRequest& request, const Progress& progress);
 
-/// What the paper's graphs show after the first frame. Many more pictures are reused than combined; more combined than made anew.
+/// What the paper's graphs seem to show after the first frame: many more pictures are reused than combined, and more are
+/// combined than made anew. The numbers that stand for it here are ours: its text has none.
 struct StudyShape {
     double reused_per_combined = 0, combined_per_fresh = 0;  ///< infinite where nothing is combined or made anew
     [[nodiscard]] bool as_published() const { return reused_per_combined >= 10 && combined_per_fresh > 1; }

@@ -1,6 +1,7 @@
 // Scenes and walks of the studies.
 #include "tools/cache_study/study_scenes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -10,8 +11,6 @@ namespace surefoot::cache_study {
 
 namespace {
 
-/// The paper gives neither speeds nor rates: a person walks, at 30 Hz.
-constexpr double step_m = 1.4 / 30;
 constexpr double walking_eye_m = 1.7;
 
 /// A wide plain of equal complexity everywhere: upright triangles on a grid, so flat that no box is split in height.
@@ -23,7 +22,8 @@ struct StudyEntry {
     std::uint32_t frames;
     cache::TreeOptions tree;
     Result<std::vector<cache::Triangle>> (*triangles)();
-    dvec3 (*eye)(const Box& scene, double way_m);
+    dvec2 from, to;             ///< ends of the way, along x and z, as shares of the scene
+    double before_scene_m = 0;  ///< the way is so far outside, along z
 };
 
 Result<std::vector<cache::Triangle>> plain() {
@@ -59,36 +59,40 @@ Result<std::vector<cache::Triangle>> generated(std::string_view name) {
     return triangles_of(made->scene);
 }
 
-const dvec3 diagonal = dvec3(1, 0, 1) / 1.4142135623730951;
-
 const std::array<StudyEntry, 4> entries = {
-    StudyEntry{{"flat", "a plain of 512 m, on its diagonal (figures 6 and 9)"},
+    StudyEntry{{"flat", "a plain of 512 m, crossed on its diagonal (figures 6 and 9)"},
                120,
                {.branching = 4, .levels = 5},
                plain,
-               [](const Box& scene, double way_m) {
-                   const dvec3 side = scene.max - scene.min;
-                   return scene.min + dvec3(0.3 * side.x, walking_eye_m, 0.3 * side.z) + way_m * diagonal;
-               }},
+               {0.1, 0.1},
+               {0.9, 0.9}},
     StudyEntry{{"forest", "100 trees, passed sideways (figure 7, left)"},
                100,
                {.branching = 8, .levels = 4},
                [] { return generated("forest"); },
-               [](const Box& scene, double way_m) {
-                   return dvec3(0.45 * (scene.min.x + scene.max.x) + way_m, walking_eye_m, scene.max.z + 5);
-               }},
-    StudyEntry{
-        {"zoom", "the same trees, from a corner towards the middle (figure 7, right)"},
-        100,
-        {.branching = 8, .levels = 4},
-        [] { return generated("forest"); },
-        [](const Box& scene, double way_m) { return dvec3(scene.min.x, walking_eye_m, scene.min.z) + (way_m - 10) * diagonal; }},
-    StudyEntry{{"room", "a furnished room, towards it from outside (figures 10 and 11)"},
+               {0, 1},
+               {1, 1},
+               5},
+    StudyEntry{{"zoom", "the same trees, from a corner to the middle (figure 7, right)"},
+               100,
+               {.branching = 8, .levels = 4},
+               [] { return generated("forest"); },
+               {0, 0},
+               {0.5, 0.5}},
+    StudyEntry{{"room", "a furnished room, through it inside (figures 10 and 11)"},
                100,
                {.branching = 8, .levels = 3},
                [] { return generated("room"); },
-               [](const Box& scene, double way_m) { return dvec3(scene.centre().x, walking_eye_m, scene.max.z + 6 - way_m); }},
+               {0.4, 0.78},
+               {0.88, 0.78}},
 };
+
+/// share: of the way.
+dvec3 eye_of(const StudyEntry& entry, const Box& scene, double share) {
+    const dvec2 at = entry.from + share * (entry.to - entry.from);
+    const dvec3 side = scene.max - scene.min;
+    return {scene.min.x + at.x * side.x, walking_eye_m, scene.min.z + at.y * side.z + entry.before_scene_m};
+}
 
 const StudyEntry* entry_of(std::string_view study) {
     for (const StudyEntry& entry : entries)
@@ -125,8 +129,11 @@ Result<StudyScene> make_study(std::string_view study, std::uint32_t frames) {
     auto tree = cache::make_boxes(scene.triangles, entry->tree);
     if (!tree) return tree.error();
     scene.tree = std::move(*tree);
-    for (std::uint32_t frame = 0; frame < frames; ++frame)
-        scene.eyes.push_back(entry->eye(scene.tree.boxes.front().box, frame * step_m));
+    const Box& all = scene.tree.boxes.front().box;
+    const double steps = std::max(frames, 2U) - 1.0;
+    for (std::uint32_t frame = 0; frame < frames; ++frame) scene.eyes.push_back(eye_of(*entry, all, frame / steps));
+    scene.walked_m = glm::length(scene.eyes.back() - scene.eyes.front());
+    scene.step_m = scene.walked_m / steps;
     return scene;
 }
 

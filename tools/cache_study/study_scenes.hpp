@@ -15,7 +15,8 @@ namespace surefoot::cache_study {
 struct StudyScene {
     std::vector<cache::Triangle> triangles;
     cache::BoxTree tree;
-    std::vector<dvec3> eyes;
+    std::vector<dvec3> eyes;          ///< evenly, on a straight way
+    double walked_m = 0, step_m = 0;  ///< in all, and from a frame to the next
 };
 
 /// Names and help of the studies.
@@ -24,7 +25,7 @@ std::span<const Named> studies();
 /// Frames that the paper shows of a study.
 std::uint32_t usual_frames(std::string_view study);
 
-/// frames: 1 or more. Error: unknown name.
+/// The way is the same for any number of frames; its steps are not. frames: 1 or more. Error: unknown name.
 Result<StudyScene> make_study(std::string_view study, std::uint32_t frames);
 
 }  // namespace surefoot::cache_study

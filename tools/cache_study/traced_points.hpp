@@ -1,4 +1,4 @@
-// Points of a scene, followed through the pictures that show them: what is measured where bounds are promised.
+// Points of a scene, followed by calculation through the pictures that would show them. Bounds are compared with this.
 #pragma once
 
 #include <cstdint>

@@ -21,7 +21,7 @@ struct CacheStudyArguments {
     bool json = false;
 };
 
-constexpr std::string_view sheet_ending = ".png";
+constexpr std::string_view sheet_ending = ".png", no_times = "Nothing is drawn yet";
 
 nlohmann::ordered_json finite_or_null(double value) {
     if (std::isfinite(value)) return value;
@@ -34,22 +34,31 @@ nlohmann::ordered_json cache_frame_json(const cache_study::StudyFrame& frame) {
             {"reused", frame.counts.reused},
             {"not_replaceable", frame.counts.not_replaceable},
             {"refreshed_ahead", frame.counts.ahead},
+            {"triangles_drawn", frame.work.triangles},
+            {"texels_made", frame.work.texels},
             {"bytes", frame.bytes},
             {"bound_px", frame.bound_px},
-            {"measured_px", frame.measured_px}};
+            {"traced_px", frame.traced_px},
+            {"ms", nullptr}};
 }
 
-nlohmann::ordered_json cache_sums_json(const cache_study::StudySums& sums) {
+nlohmann::ordered_json cache_sums_json(const cache_study::StudySums& sums, std::uint64_t triangles) {
     const cache_study::StudyShape shape = cache_study::shape_of(sums);
-    return {{"new", sums.fresh},
+    const nlohmann::ordered_json verdict = sums.frames > 0 ? nlohmann::ordered_json(shape.as_published()) : nullptr;
+    return {{"frames", sums.frames},
+            {"new", sums.fresh},
             {"combined", sums.combined},
             {"reused", sums.reused},
             {"not_replaceable", sums.not_replaceable},
             {"max_new_of_a_frame", sums.max_fresh},
-            {"measured_px", sums.measured_px},
+            {"max_refreshes_of_a_frame", sums.max_refreshes},
+            {"triangles_drawn", sums.work.triangles},
+            {"triangles_without_cache", sums.frames * triangles},
+            {"texels_made", sums.work.texels},
+            {"traced_px", sums.traced_px},
             {"reused_per_combined", finite_or_null(shape.reused_per_combined)},
             {"combined_per_new", finite_or_null(shape.combined_per_fresh)},
-            {"shape_as_published", shape.as_published()}};
+            {"shape_as_published", verdict}};
 }
 
 void print_study_json(const CacheStudyArguments& a, const cache_study::Study& study) {
@@ -61,39 +70,67 @@ void print_study_json(const CacheStudyArguments& a, const cache_study::Study& st
                 {"filled_boxes", study.filled_boxes},
                 {"width", a.request.width},
                 {"height", a.request.height},
+                {"walked_m", study.walked_m},
+                {"step_m", study.step_m},
+                {"ms_reason", no_times},
                 {"frames", frames},
-                {"after_first", cache_sums_json(cache_study::sums_after_first(study.corrected))},
-                {"published_tests", cache_sums_json(cache_study::sums_after_first(study.published))}});
+                {"after_first", cache_sums_json(cache_study::sums_after_first(study.corrected), study.triangles)},
+                {"published_tests", cache_sums_json(cache_study::sums_after_first(study.published), study.triangles)}});
+}
+
+using StudyRow = std::pair<const char*, cache_study::StudySums>;
+
+void print_study_tables(const std::vector<StudyRow>& rows, std::uint64_t triangles) {
+    const report::Columns counts({{"", 22},
+                                  {"new", -7},
+                                  {"combined", -9},
+                                  {"reused", -8},
+                                  {"not replaceable", -16},
+                                  {"most refreshed", -15},
+                                  {"traced", -9}});
+    fmt::print("{}\n", counts.heading());
+    for (const auto& [what, s] : rows)
+        fmt::print("{}\n", counts.row({what, std::to_string(s.fresh), std::to_string(s.combined), std::to_string(s.reused),
+                                       std::to_string(s.not_replaceable), std::to_string(s.max_refreshes),
+                                       fmt::format("{:.2f} px", s.traced_px)}));
+    const report::Columns work(
+        {{"", 22}, {"triangles drawn", -16}, {"without a cache", -16}, {"share", -8}, {"texels made", -13}});
+    fmt::print("{}\n", work.heading());
+    for (const auto& [what, s] : rows) {
+        const double all = static_cast<double>(s.frames) * static_cast<double>(triangles);
+        const double share = all > 0 ? static_cast<double>(s.work.triangles) / all : 0;
+        fmt::print("{}\n", work.row({what, std::to_string(s.work.triangles), std::to_string(s.frames * triangles),
+                                     fmt::format("{:.0f} %", 100 * share), std::to_string(s.work.texels)}));
+    }
+}
+
+void print_study_verdict(const char* rules, const cache_study::StudySums& sums) {
+    const cache_study::StudyShape shape = cache_study::shape_of(sums);
+    fmt::print("{}: {:.1f} reused for each combined one, {:.2f} combined for each new one: {}.\n", rules,
+               shape.reused_per_combined, shape.combined_per_fresh, shape.as_published() ? "holds" : "does not hold");
 }
 
 void print_study_text(const CacheStudyArguments& a, const cache_study::Study& study) {
     fmt::print("{}: {} triangles in {} boxes, {} of them empty; {} frames of {}x{} at 60 degrees\n", a.request.study,
                study.triangles, study.boxes, study.boxes - study.filled_boxes, study.corrected.size(), a.request.width,
                a.request.height);
-    const report::Columns columns(
-        {{"", 28}, {"new", -7}, {"combined", -9}, {"reused", -8}, {"not replaceable", -16}, {"most new", -9}, {"measured", -10}});
-    fmt::print("{}\n", columns.heading());
-    const auto row = [&](const char* what, const cache_study::StudySums& s) {
-        fmt::print("{}\n", columns.row({what, std::to_string(s.fresh), std::to_string(s.combined), std::to_string(s.reused),
-                                        std::to_string(s.not_replaceable), std::to_string(s.max_fresh),
-                                        fmt::format("{:.2f} px", s.measured_px)}));
-    };
-    const cache_study::StudyFrame& first = study.corrected.front();
-    const cache::CacheCounts& counts = first.counts;
-    row("first frame",
-        {counts.fresh, counts.combined, counts.reused, counts.not_replaceable, counts.fresh, 0, first.measured_px});
-    const auto sums = cache_study::sums_after_first(study.corrected);
-    row("after it, summed", sums);
-    row("by the tests of 1996", cache_study::sums_after_first(study.published));
-    const cache_study::StudyShape shape = cache_study::shape_of(sums);
+    fmt::print("Walked: {:.1f} m, in steps of {:.3f} m.\n", study.walked_m, study.step_m);
+    const auto sums = cache_study::sums_after_first(study.corrected), of_1996 = cache_study::sums_after_first(study.published);
+    print_study_tables({{"first frame", cache_study::sums_of({&study.corrected.front(), 1})},
+                        {"after it, summed", sums},
+                        {"by the tests of 1996", of_1996}},
+                       study.triangles);
     fmt::print("Pictures held at the end: {:.1f} MB.\n", static_cast<double>(study.corrected.back().bytes) * 1e-6);
-    fmt::print("Measured: the largest error of points in pictures, in pixels at the corner of the view. Promised: {:.2f} px.\n",
+    fmt::print("Traced: the largest error of points in pictures, in pixels at the corner of the view. Promised: {:.2f} px.\n",
                sums.bound_px);
-    fmt::print("After the first frame {:.1f} pictures are reused for each combined one, and {:.2f} combined for each new one.\n",
-               shape.reused_per_combined, shape.combined_per_fresh);
-    fmt::print("Published: many more are reused than combined (here 10 or more), and more combined than new (over 1): {}.\n",
-               shape.as_published() ? "holds" : "does not hold");
-    fmt::print("Nothing is drawn yet, so there are no times.\n");
+    if (sums.frames > 0) {
+        fmt::print(
+            "Published curves, as we read them: 10 or more are reused for each combined one, and over 1 combined for each "
+            "new.\n");
+        print_study_verdict("Here", sums);
+        print_study_verdict("By the tests of 1996", of_1996);
+    }
+    fmt::print("There are no times. {}.\n", no_times);
 }
 
 int run_cache_study(CacheStudyArguments& a, const Context& context) {
@@ -142,12 +179,13 @@ void add_cache_study(CLI::App& app, Context& context) {
         names.push_back(study.name);
     }
     c->add_option("study", a->request.study, help)->required()->check(one_of(names));
-    c->add_option("--frames", a->request.frames, "Number of frames (else as many as the paper shows: 120 or 100)")
+    c->add_option("--frames", a->request.frames, "Number of frames on the same way (else as many as the paper shows: 120 or 100)")
         ->check(whole_number_within(1, 1'000'000));
     c->add_option("--size", a->size, "Size of the picture in pixels [320x240]");
-    c->add_option("--birds-eye", a->birds_eye,
-                  "PNG file of 20 views from above, spread over the frames. Red: new; green: combined; white: reused; black: "
-                  "not replaceable")
+    c->add_option(
+         "--birds-eye", a->birds_eye,
+         "PNG file of up to 20 views from above, spread over the frames. Red: new; green: combined; white: reused; black: "
+         "not replaceable")
         ->check(names_something());
     c->callback([&context, a] { context.run = [a, &context] { return run_cache_study(*a, context); }; });
 }
