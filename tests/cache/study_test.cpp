@@ -33,17 +33,25 @@ TEST(CacheStudy, HasTheBoxesAndFramesOfThePaper) {
     EXPECT_EQ(study_of("room", 2).boxes, 73U);
 }
 
-TEST(CacheStudy, OfThePlainHasTheShapeOfFigure6) {
-    const Study study = study_of("flat");
-    ASSERT_EQ(study.corrected.size(), 120U);
+TEST(CacheStudy, OfThePlainComesToTheShapeOfFigure6InSmallerSteps) {
+    const StudyShape in_120 = shape_of(sums_after_first(study_of("flat").corrected));
+    EXPECT_LT(in_120.reused_per_combined, 1) << "a step of 5 m makes nearly every picture anew";
+    const Study study = study_of("flat", 2400);
     const StudySums sums = sums_after_first(study.corrected);
-    EXPECT_GE(sums.reused, 10 * sums.combined);
+    EXPECT_GE(sums.reused, 3 * sums.combined);
     EXPECT_GT(sums.combined, sums.fresh);
+    EXPECT_LT(sums.work.triangles, sums.frames * study.triangles / 4);
     for (const StudyFrame& frame : study.corrected) {
         EXPECT_GT(frame.counts.not_replaceable, 0U) << "the block round the eye";
         EXPECT_LT(frame.counts.not_replaceable, 100U);
         EXPECT_GT(frame.bytes, 0U);
     }
+}
+
+TEST(CacheStudyAtNight, OfThePlainAtWalkingPaceHasTheShapeOfFigure6) {
+    const Study study = study_of("flat", 12'400);
+    EXPECT_NEAR(study.step_m, 1.4 / 30, 0.001);
+    EXPECT_TRUE(shape_of(sums_after_first(study.corrected)).as_published());
 }
 
 TEST(CacheStudy, TracesNoMoreThanIsPromisedAndMoreByThePublishedTests) {
@@ -152,7 +160,7 @@ Inks inks_of(const BirdsEyeView& view) {
 }
 
 TEST(BirdsEye, FirstIsRedAndGreenThenMostlyWhiteRoundABlackBlock) {
-    const Study study = study_of("flat", 0, true);
+    const Study study = study_of("flat", 2400, true);
     ASSERT_EQ(study.sheet.views.size(), max_views);
     const Inks first = inks_of(study.sheet.views.front()), later = inks_of(study.sheet.views.back());
     EXPECT_GT(first.red, 0.05);
