@@ -116,10 +116,9 @@ void print_study_text(const CacheStudyArguments& a, const cache_study::Study& st
                a.request.height);
     fmt::print("Walked: {:.1f} m, in steps of {:.3f} m.\n", study.walked_m, study.step_m);
     const auto sums = cache_study::sums_after_first(study.corrected), of_1996 = cache_study::sums_after_first(study.published);
-    print_study_tables({{"first frame", cache_study::sums_of({&study.corrected.front(), 1})},
-                        {"after it, summed", sums},
-                        {"by the tests of 1996", of_1996}},
-                       study.triangles);
+    std::vector<StudyRow> rows = {{"first frame", cache_study::sums_of({&study.corrected.front(), 1})}};
+    if (sums.frames > 0) rows.insert(rows.end(), {{"after it, summed", sums}, {"by the tests of 1996", of_1996}});
+    print_study_tables(rows, study.triangles);
     fmt::print("Pictures held at the end: {:.1f} MB.\n", static_cast<double>(study.corrected.back().bytes) * 1e-6);
     fmt::print("Traced: the largest error of points in pictures, in pixels at the corner of the view. Promised: {:.2f} px.\n",
                sums.bound_px);
