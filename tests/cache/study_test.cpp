@@ -7,6 +7,7 @@
 
 #include "tools/cache_study/study.hpp"
 #include "tools/cache_study/study_scenes.hpp"
+#include "tools/cache_study/traced_points.hpp"
 
 namespace surefoot::cache_study {
 namespace {
@@ -72,6 +73,32 @@ TEST(CacheStudy, TracesNoMoreThanIsPromisedAndMoreByThePublishedTests) {
         EXPECT_GT(sums_after_first(study.published).traced_px, pixels.mean_rad / pixels.smallest_rad)
             << name << ": beyond what those tests allow";
     }
+}
+
+TEST(CacheStudy, PointsKeepWhatWasWrongInThePicturesThatWereDrawnIntoOne) {
+    const auto scene = make_study("flat", 2400);
+    ASSERT_TRUE(scene);
+    TracedPoints points(*scene);
+    EXPECT_GT(points.count(), 1000U);
+    cache::CacheState state = cache::empty_state(scene->tree);
+    double at_making_rad = 0;
+    for (std::uint32_t frame = 0; frame < 60; ++frame) {
+        cache::CacheView view;
+        view.eye = scene->eyes[frame];
+        view.pixels = cache::pixel_angles(Pose{}, {320, 240});
+        view.frame = frame;
+        cache::CachePlan plan = cache::plan_frame(scene->tree, view, {}, state);
+        points.follow(plan);
+        std::erase_if(plan.draws, [&](const cache::BoxDraw& draw) { return plan.uses[draw.box] != cache::BoxUse::combined; });
+        const double error_rad = points.max_error_rad(plan, view.eye);
+        if (frame == 0) {
+            EXPECT_LT(error_rad, 1e-12) << "all pictures are of one eye";
+        }
+        EXPECT_LE(error_rad, view.pixels.smallest_rad);
+        at_making_rad = std::max(at_making_rad, error_rad);
+        state = std::move(plan.after);
+    }
+    EXPECT_GT(at_making_rad, 0.1 * cache::pixel_angles(Pose{}, {320, 240}).smallest_rad);
 }
 
 TEST(CacheStudy, WalksThroughTheScene) {

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "render/image/image.hpp"
 #include "rt/base/file.hpp"
