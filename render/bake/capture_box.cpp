@@ -51,11 +51,12 @@ struct Sums {
 bool keep_share(std::vector<std::uint8_t>& rgba, double share) {
     std::vector<std::uint8_t> alphas;
     for (std::size_t at = 3; at < rgba.size(); at += 4) alphas.push_back(rgba[at]);
-    const auto opaque = static_cast<std::size_t>(std::llround(share * static_cast<double>(alphas.size())));
+    // Texels have one to four samples, so a sharp edge may leave fewer texels with any than the samples' share says.
+    const std::size_t shown = alphas.size() - static_cast<std::size_t>(std::count(alphas.begin(), alphas.end(), 0));
+    const auto opaque = std::min(shown, static_cast<std::size_t>(std::llround(share * static_cast<double>(alphas.size()))));
     if (opaque == 0) return false;
     const auto last = alphas.begin() + static_cast<std::ptrdiff_t>(opaque - 1);
     std::nth_element(alphas.begin(), last, alphas.end(), std::greater<>());
-    if (*last == 0) return false;
     for (std::size_t at = 3; at < rgba.size(); at += 4)
         rgba[at] = static_cast<std::uint8_t>(std::min(255U, (rgba[at] * std::uint32_t{opaque_alpha} + *last - 1U) / *last));
     return true;

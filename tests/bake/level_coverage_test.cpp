@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "render/bake/mesh_surface.hpp"
 #include "render/bake/objects.hpp"
 #include "render/bake/picture_loss.hpp"
+#include "render/measure/mesh_distance.hpp"
 #include "tests/bake/scenes.hpp"
 
 namespace surefoot::bake {
