@@ -42,8 +42,17 @@ public:
           input_(input),
           ranges_(lit_ranges(model, has_light)),
           light_(ranges_.size()),
-          directions_(sun_directions(model)),
-          far_m_(model.nodes.empty() ? 0 : 2 * model.nodes[0].box.diagonal()) {}
+          far_m_(model.nodes.empty() ? 0 : 2 * model.nodes[0].box.diagonal()) {
+        directions_[0] = glm::normalize(model.sun_direction);
+        const model::LightFacts& facts = model.light;
+        for (std::uint32_t i = 0; i + 1 < moments; ++i)
+            directions_[1 + i] =
+                model::towards_sun({model::hour_of_moment(i, facts.day, facts.latitude_deg), facts.day, facts.latitude_deg});
+        for (dvec3& towards : directions_) {
+            towards.y = std::max(towards.y, min_sun_height);
+            towards = glm::normalize(towards);
+        }
+    }
 
     [[nodiscard]] const std::vector<VertexRange>& ranges() const { return ranges_; }
     void begin(std::size_t r);
@@ -68,7 +77,7 @@ private:
     const LightInput& input_;
     std::vector<VertexRange> ranges_;
     std::vector<RangeLight> light_;
-    SunDirections directions_;
+    std::array<dvec3, moments> directions_{};
     double far_m_;
 };
 
@@ -256,19 +265,6 @@ BakedLight LightMaker::finish() {
 }
 
 }  // namespace
-
-SunDirections sun_directions(const model::Model& model) {
-    SunDirections out{};
-    out[0] = glm::normalize(model.sun_direction);
-    const model::LightFacts& facts = model.light;
-    for (std::uint32_t i = 0; i + 1 < moments; ++i)
-        out[1 + i] = model::towards_sun({model::hour_of_moment(i, facts.day, facts.latitude_deg), facts.day, facts.latitude_deg});
-    for (dvec3& towards : out) {
-        towards.y = std::max(towards.y, min_sun_height);
-        towards = glm::normalize(towards);
-    }
-    return out;
-}
 
 std::size_t baked_light_steps(const model::Model& model) { return vertex_tasks(lit_ranges(model, has_light)).size(); }
 

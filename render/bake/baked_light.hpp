@@ -1,7 +1,6 @@
 // Light that does not move: which vertices the sun reaches at which hour, and what lamps and glowing surfaces give them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -12,10 +11,6 @@
 #include "render/model/model.hpp"
 
 namespace surefoot::bake {
-
-/// Towards the sun at the moments of model::SunSeen. On the horizon all ground would hide it, so it stands a little above.
-using SunDirections = std::array<dvec3, sizeof(model::SunSeen)>;
-SunDirections sun_directions(const model::Model& model);
 
 /// What light was found.
 struct BakedLight {

@@ -1,7 +1,6 @@
 // Leaves are drawn one by one; clusters are put together from their children's pictures, a face after the other.
 #include "render/bake/boxes.hpp"
 
-#include "render/bake/box_light.hpp"
 #include "render/bake/level_coverage.hpp"
 #include "render/bake/opaque_boxes.hpp"
 #include "render/model/loss_groups.hpp"
@@ -9,8 +8,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <optional>
-#include <span>
 
 namespace surefoot::bake {
 
@@ -55,31 +52,20 @@ std::vector<BoxForm> capture_boxes(const model::Model& model, const BoxRequest& 
     }
     std::atomic<bool> go{true};
     const std::vector<Index> leaves = wanted_leaves(model, request);
-    std::optional<LeafLight> light;
-    if (request.textured && !(model.sun_seen.empty() && model.lamp_light.empty())) light.emplace(model);
-    const auto capture = [&](Index n, std::uint32_t face, const FormPicture& seen, std::span<const SeenLight> lights) {
-        std::vector<Index> owners;
-        FaceCapture& to = boxes[n].faces[face];
-        to = capture_face(seen, model.nodes[n].box, face, request.pixels, light ? &owners : nullptr);
-        if (light && to.whole) light_corners(owners, lights, light->suns(), request.pixels, to);
-    };
     for_all(leaves.size(), [&](std::size_t i) {
         if (!go) return;
         const Node& node = model.nodes[leaves[i]];
         FormPicture seen;
-        seen.owner = 0;
         for (std::uint32_t face = 0; face < box_faces; ++face) {
             seen.clear(view_of(node.box, direction_of_face(face), tree.middle(), samples), request.textured);
             draw_form(model, model.reps[node.first_rep + node.rep_count - 1], seen);
-            const SeenLight own = light ? light->seen(node, face) : SeenLight{};
-            capture(leaves[i], face, seen, {&own, 1});
+            boxes[leaves[i]].faces[face] = capture_face(seen, node.box, face, request.pixels);
         }
         if (!step()) go = false;
     });
     for (std::uint32_t face = 0; face < box_faces && go; ++face) {
-        const std::vector<SeenLight> lights = light ? light->seen_of_all(face, for_all) : std::vector<SeenLight>();
         const auto use = [&](Index n, const FormPicture& seen) {
-            if (request.wanted[n]) capture(n, face, seen, lights);
+            if (request.wanted[n]) boxes[n].faces[face] = capture_face(seen, model.nodes[n].box, face, request.pixels);
             return step();
         };
         if (!tree.look({direction_of_face(face), samples, request.textured}, for_all, use)) go = false;
@@ -90,7 +76,6 @@ std::vector<BoxForm> capture_boxes(const model::Model& model, const BoxRequest& 
         for (FaceCapture& face : box.faces)
             if (!box.textured) face.rgba = {};
     }
-    if (light) for_all(boxes.size(), [&](std::size_t n) { take_light(model, boxes[n]); });
     return go ? std::move(boxes) : std::vector<BoxForm>();
 }
 
@@ -181,8 +166,6 @@ std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs, const std::vec
         group_losses.insert(group_losses.end(), end - static_cast<std::ptrdiff_t>(kept), end);
     }
     model_.vertices.resize(vertices_);
-    if (!model_.sun_seen.empty()) model_.sun_seen.resize(vertices_, model::always_in_sun);
-    if (!model_.lamp_light.empty()) model_.lamp_light.resize(vertices_);
     model_.indices.resize(indices_);
     model_.parts.resize(parts_);
     model_.placements.resize(placements_);

@@ -19,8 +19,7 @@ struct BoxRequest {
     std::uint32_t pixels = 28;  ///< of a face's side: face_pixels()
 };
 
-/// A box a node; those that are not wanted have no faces. Errors are not bounded yet. Where shadows or lamps were measured,
-/// pictures are without light, which their corners have (box_light.hpp). Empty: step() said to stop.
+/// A box a node; those that are not wanted have no faces. Errors are not bounded yet. Empty: step() said to stop.
 std::vector<BoxForm> capture_boxes(const model::Model& model, const BoxRequest& request, const ForAll& for_all,
                                    const std::function<bool()>& step);
 /// How many steps there are.

@@ -74,22 +74,9 @@ Direction direction_of_face(std::uint32_t face) {
     return from;
 }
 
-std::array<std::uint32_t, 4> shown_texels(const FaceCapture& face, std::uint32_t pixels) {
-    std::array<std::uint32_t, 4> range{pixels, pixels, 0, 0};
-    for (std::uint32_t y = 0; y < pixels; ++y) {
-        for (std::uint32_t x = 0; x < pixels; ++x) {
-            if (face.rgba[std::size_t{4} * (static_cast<std::size_t>(y) * pixels + x) + 3] < opaque_alpha) continue;
-            range = {std::min(range[0], x), std::min(range[1], y), std::max(range[2], x + 1), std::max(range[3], y + 1)};
-        }
-    }
-    return range;
-}
-
-FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t face, std::uint32_t pixels,
-                         std::vector<model::Index>* owners) {
+FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t face, std::uint32_t pixels) {
     FaceCapture out;
     out.rgba.assign(std::size_t{4} * pixels * pixels, 0);
-    if (owners != nullptr) owners->assign(std::size_t{pixels} * pixels, model::none);
     const FormView& view = seen.view;
     if (seen.samples.empty()) return out;
     const Direction& from = view.direction;
@@ -123,7 +110,6 @@ FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t 
                     if (!sample.covered() || depth > near_half_m) continue;
                     out.depth_m = std::max(out.depth_m, static_cast<float>(depth));
                     texel.add(sample);
-                    if (owners != nullptr) (*owners)[static_cast<std::size_t>(y) * pixels + x] = sample.owner;
                 }
             }
             const std::uint64_t count = std::uint64_t{row.count} * column.count;

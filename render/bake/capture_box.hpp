@@ -9,14 +9,6 @@
 
 namespace surefoot::bake {
 
-/// The light of a corner of what a face shows.
-struct CornerLight {
-    std::array<std::int8_t, 4> normal{};  ///< as Vertex has it, in the world
-    std::array<std::uint8_t, 4> hidden{};
-    model::SunSeen sun = model::always_in_sun;
-    model::LampLight lamps{};
-};
-
 /// One face, as an orthographic camera on its axis sees the near half of the box. Row 0 lies at the low end of the second
 /// in-plane axis, column 0 at the low end of the first. They are (axis + 1) % 3 and (axis + 2) % 3.
 struct FaceCapture {
@@ -25,13 +17,8 @@ struct FaceCapture {
     float depth_m = 0;                   ///< the deepest captured point behind the face
     float covered = 0;                   ///< share of the face; 0: it has no opaque texel
     bool whole = true;                   ///< false: the face is too long for the picture that it was captured from
-    /// Of the corners of shown_texels(): low, high along the first in-plane axis, then the same at the high end of the second.
-    /// Empty: rgba holds all light.
-    std::vector<CornerLight> light;
 };
 constexpr std::uint8_t opaque_alpha = 128;
-/// The texels of a face that show something: first column and row, and those after the last.
-std::array<std::uint32_t, 4> shown_texels(const FaceCapture& face, std::uint32_t pixels);
 
 /// Faces in the order -x, +x, -y, +y, -z, +z.
 constexpr std::uint32_t box_faces = 6;
@@ -39,8 +26,7 @@ constexpr std::uint32_t box_faces = 6;
 Direction direction_of_face(std::uint32_t face);
 
 /// seen: full detail from direction_of_face(face), of about 2 * pixels samples across. The far half is left to the opposite face,
-/// which shows it through this one's holes. That halves the parallax. owners: takes, by texel, the owner of one of its samples.
-FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t face, std::uint32_t pixels,
-                         std::vector<model::Index>* owners = nullptr);
+/// which shows it through this one's holes. That halves the parallax.
+FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t face, std::uint32_t pixels);
 
 }  // namespace surefoot::bake

@@ -114,22 +114,21 @@ model::Index add_box_material(const BoxForm& form, model::Model& model) {
     facts.image = true;
     facts.in_fog = model.light.fog_visibility_m > 0;
     facts.alpha = m.alpha;
-    m.effects = effects::called_for_by(facts) | form.light;
+    m.effects = effects::called_for_by(facts);
     model.materials.push_back(m);
     return static_cast<model::Index>(model.materials.size() - 1);
 }
 
-/// To the vertex that was added last. Those before it that have no light of their own see all of the sun and no lamp.
-void give_light(const CornerLight& light, model::Model& model) {
-    std::copy(light.normal.begin(), light.normal.end(), model.vertices.back().normal);
-    std::copy(light.hidden.begin(), light.hidden.end(), model.vertices.back().hidden);
-    if (!model.sun_seen.empty()) {
-        model.sun_seen.resize(model.vertices.size(), model::always_in_sun);
-        model.sun_seen.back() = light.sun;
+/// The texels of a face that show something: columns and rows, from and to.
+std::array<std::uint32_t, 4> shown_texels(const FaceCapture& face, std::uint32_t n) {
+    std::array<std::uint32_t, 4> range{n, n, 0, 0};
+    for (std::uint32_t y = 0; y < n; ++y) {
+        for (std::uint32_t x = 0; x < n; ++x) {
+            if (face.rgba[std::size_t{4} * (static_cast<std::size_t>(y) * n + x) + 3] < opaque_alpha) continue;
+            range = {std::min(range[0], x), std::min(range[1], y), std::max(range[2], x + 1), std::max(range[3], y + 1)};
+        }
     }
-    if (model.lamp_light.empty()) return;
-    model.lamp_light.resize(model.vertices.size());
-    model.lamp_light.back() = light.lamps;
+    return range;
 }
 
 /// One face: four vertices and two triangles. `f`: down and up along x, y, z. Only its part that shows something.
@@ -155,7 +154,6 @@ void emit_face(const BoxForm& form, std::uint32_t f, model::Model& model, model:
         v.uv[0] = (static_cast<float>(left) + x) / static_cast<float>(columns * cells.cell);
         v.uv[1] = (static_cast<float>(low) + y) / static_cast<float>(rows * cells.cell);
         model.vertices.push_back(v);
-        if (!form.faces[f].light.empty()) give_light(form.faces[f].light[(cw ? 2U : 0U) + (cu ? 1U : 0U)], model);
     }
     part.vertex_count += 4;
     for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) model.indices.push_back(base + i);

@@ -45,8 +45,6 @@ struct BoxForm {
     float error_m = 0;
     bool textured = false;     ///< else each face has one colour
     std::uint32_t pixels = 0;  ///< of a face's side
-    /// Effects that light its pictures by what the corners of faces have. 0: pictures hold the light that they were captured in.
-    model::EffectMask light = 0;
     [[nodiscard]] std::uint32_t shown_faces() const {
         return static_cast<std::uint32_t>(
             std::count_if(faces.begin(), faces.end(), [](const FaceCapture& f) { return f.covered > 0; }));

@@ -88,7 +88,6 @@ struct Painter {
     mat3 cofactor{1.0F};  ///< turns normals
     bool mirrored = false;
     bool own_vertices = false;  ///< the model's, which have shadows; not others that look like it
-    bool turns = true;          ///< normals of two-sided surfaces turn to the eye; not those of boxes
 
     struct Corner {
         vec3 at;  ///< pixels, pixels, metres towards the eye
@@ -110,7 +109,7 @@ struct Painter {
         if (!picture.lit || (material.effects & light) == 0) return colour;
         vec3 n = cofactor * vec3(v.normal[0], v.normal[1], v.normal[2]);
         n *= (mirrored ? -1.0F : 1.0F) / std::sqrt(std::max(glm::dot(n, n), 1e-30F));
-        const bool turned = turns && material.two_sided && glm::dot(n, picture.view.direction.towards) < 0.0F;
+        const bool turned = material.two_sided && glm::dot(n, picture.view.direction.towards) < 0.0F;
         if (turned) n = -n;
         vec3 by_light(1.0F);
         if ((material.effects & model::effect_sun) != 0) {
@@ -296,8 +295,7 @@ void draw_form(const model::Model& model, const model::Representation& rep, Form
     const ToPicture to(picture.view, placement.linear, placement.origin);
     for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
         const model::Part& part = model.parts[p];
-        const Painter painter{model, model.materials[part.material],          picture, to.cofactor, to.mirrored,
-                              true,  rep.kind != model::RepKind::textured_box};
+        const Painter painter{model, model.materials[part.material], picture, to.cofactor, to.mirrored, true};
         const auto corner = [&](std::uint32_t i) {
             return to.corner(model.vertices[part.first_vertex + model.indices[part.first_index + i]]);
         };

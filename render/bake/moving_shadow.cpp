@@ -98,10 +98,7 @@ private:
     std::map<Index, Index> copies_;
 };
 
-/// Pictures of boxes receive no moving shadow.
-bool is_lit_form(const model::Representation& rep) {
-    return (rep.effects & model::effect_sun) != 0 && rep.kind != model::RepKind::textured_box;
-}
+bool is_lit_form(const model::Representation& rep) { return (rep.effects & model::effect_sun) != 0; }
 
 std::string why_no_shadow(const model::Model& m, const ShadowReach& reach) {
     if (m.motions.empty() || reach.moving == 0) return "nothing moves";

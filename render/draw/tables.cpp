@@ -38,7 +38,7 @@ DrawPart make_part(const model::Model& model, const model::Part& part, const std
     out.alpha_cutoff = material.alpha_cutoff;
     const auto found = std::lower_bound(masks.begin(), masks.end(), material.effects);
     out.program = static_cast<std::uint16_t>(found - masks.begin());
-    out.two_sided = out.turns = material.two_sided;
+    out.two_sided = material.two_sided;
     out.blended = (material.effects & model::effect_blend) != 0;
     if (out.blended) out.centre = centre_of(model, part);
     return out;
@@ -60,11 +60,7 @@ DrawTables make_tables(const model::Model& model) {
     for (const model::Representation& rep : model.reps) {
         tables.reps.push_back({rep.placement, rep.first_part, rep.part_count, rep.triangles, 0});
         if (rep.kind != model::RepKind::textured_box) continue;
-        for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
-            constexpr model::EffectMask lit = model::effect_sun | model::effect_openness;
-            tables.parts[p].captured = (model.materials[model.parts[p].material].effects & lit) == 0;
-            tables.parts[p].turns = false;
-        }
+        for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) tables.parts[p].captured = true;
     }
     for (std::uint32_t n = 0; n < model.nodes.size(); ++n) {
         const model::Node& node = model.nodes[n];

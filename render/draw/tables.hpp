@@ -24,7 +24,6 @@ struct DrawPart {
     vec3 centre;            ///< of a blended one's box, in the mesh's frame; for sorting only
     std::uint16_t program;  ///< in the list of masks
     bool two_sided, blended;
-    bool turns;     ///< its normals turn to the eye; of a box they stay, since its faces show what looks outwards
     bool captured;  ///< a picture that holds the light of the bake
 };
 

@@ -232,7 +232,7 @@ void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
     const bool by_hour = part.captured && (off_ & model::effect_sun) == 0;
     instance.colour = by_hour ? darkened(part.colour, shown_.light.pictures) : part.colour;
     instance.alpha_cutoff = part.alpha_cutoff;
-    instance.two_sided = part.turns ? 1.0F : 0.0F;
+    instance.two_sided = part.two_sided ? 1.0F : 0.0F;
     instance.texture_layer = part.texture_layer;
     frame_.instances[at] = instance;
 }

@@ -267,17 +267,6 @@ TEST_P(Pictures, of_no_effect_of_all_and_of_each_materials_own_are_the_reference
     expect_equal(scene_.build(test::EffectScene::own_effects), all_bits);
 }
 
-// The faces of a box show what looks outwards. Where one sees a face from behind, through holes of another, it is lit as before.
-TEST_P(Pictures, of_a_lit_box_from_behind_are_the_references) {
-    constexpr EffectMask lit = model::effect_texture | model::effect_sun | model::effect_openness | model::effect_shadow;
-    model::Model model = uniform_scene(scene_, lit);
-    const model::Representation& box = model.reps.back();
-    ASSERT_EQ(box.kind, model::RepKind::textured_box);
-    model.placements[box.placement].linear = mat3(vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1));
-    model.materials[model.parts[box.first_part].material].two_sided = true;
-    expect_equal(model, lit);
-}
-
 TEST_P(Pictures, differ_from_the_reference_where_a_program_leaves_an_effect_out) {
     const model::Model model = scene_.build(test::EffectScene::own_effects);
     for (const auto& module : effects::all_effects()) {

@@ -136,7 +136,7 @@ struct ScreenTriangle {
 struct DrawnPart {
     double distance_m = 0;  ///< from the eye to the middle of its node's box
     model::Index node = 0, part = 0, placement = 0;
-    bool box = false;  ///< a picture on a box: it holds the light of the bake, unless light is an effect of its material
+    bool captured = false;  ///< a picture that holds the light of the bake
 };
 
 /// Draws one pixel. Blended surfaces are hidden by opaque ones, and hide nothing themselves.
@@ -179,16 +179,13 @@ inline void draw(Picture& picture, const View& view, const DrawnPart& drawn) {
     const model::Material& material = view.model.materials[part.material];
     const model::Placement& placement = view.model.placements[drawn.placement];
     const bool mirrored = glm::determinant(dmat3(placement.linear)) < 0;
-    const bool lit = has(material, model::effect_sun) || has(material, model::effect_openness);
-    model::Material shaded = material;  // the faces of a box show what looks outwards, also from within
-    shaded.two_sided = material.two_sided && !drawn.box;
     std::uint64_t surface = static_cast<std::uint64_t>(drawn.node) << 32U;
     dvec3 last_normal(0.0);
     for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) {
         std::array<Corner, 3> triangle;
         for (std::uint32_t c = 0; c < 3; ++c) {
             const std::uint32_t vertex = part.first_vertex + view.model.indices[part.first_index + i + c];
-            triangle[c] = corner_at(view, shaded, placement, vertex, drawn.box && !lit);
+            triangle[c] = corner_at(view, material, placement, vertex, drawn.captured);
         }
         const dvec3 edge = triangle[1].from_eye - triangle[0].from_eye, other = triangle[2].from_eye - triangle[0].from_eye;
         const dvec3 normal = (mirrored ? -1.0 : 1.0) * glm::normalize(glm::cross(edge, other));
@@ -213,10 +210,10 @@ inline Picture draw(const View& view) {
         if (node.child_count != 0) continue;
         const model::Representation& rep = view.model.reps[node.first_rep + node.rep_count - 1];
         const double distance_m = glm::length(0.5 * (node.box.min + node.box.max) - view.pose.position);
-        const bool box = rep.kind == model::RepKind::textured_box;
+        const bool captured = rep.kind == model::RepKind::textured_box;
         for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
             const bool last = has(view.model.materials[view.model.parts[p].material], model::effect_blend);
-            (last ? blended : opaque).push_back({distance_m, n, p, rep.placement, box});
+            (last ? blended : opaque).push_back({distance_m, n, p, rep.placement, captured});
         }
     }
     std::sort(blended.begin(), blended.end(), [](const DrawnPart& a, const DrawnPart& b) {
