@@ -105,7 +105,8 @@ TEST(CacheStudy, WalksThroughTheScene) {
     const auto walk = [](const char* name, std::uint32_t frames) {
         auto scene = make_study(name, frames);
         EXPECT_TRUE(scene);
-        return std::pair(scene->tree.boxes.front().box, *std::move(scene));
+        const Box box = scene->tree.boxes.front().box;
+        return std::pair(box, *std::move(scene));
     };
     const auto [plain, flat] = walk("flat", 120);
     EXPECT_NEAR(flat.walked_m, 0.8 * 512 * std::sqrt(2.0), 1e-6);

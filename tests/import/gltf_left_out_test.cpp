@@ -1,4 +1,5 @@
 // What a glTF file has and a walk has not: skins, morph targets and sounds are left out, each by name and with a remedy.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -41,9 +42,9 @@ TEST(GltfLeftOut, SoundIsNamedByItsExtension) {
          {"KHR_audio", "KHR_audio_emitter", "KHR_audio_graph", "MSFT_audio_emitter", "OMI_audio_emitter"}) {
         const std::string list = "[\"" + name + "\"]", what = "Sounds are left out (" + name + ")";
         TriangleGltf used, required, unnamed;
-        used.more = ",\"extensionsUsed\":" + list + R"(,"extensions":{")" + name + R"(":{"sources":[],"emitters":[]}})";
-        required.more = ",\"extensionsUsed\":" + list + ",\"extensionsRequired\":" + list;
-        unnamed.more = R"(,"extensions":{")" + name + R"(":{}})";
+        used.more = fmt::format(R"(,"extensionsUsed":{},"extensions":{{"{}":{{"sources":[],"emitters":[]}}}})", list, name);
+        required.more = fmt::format(R"(,"extensionsUsed":{0},"extensionsRequired":{0})", list);
+        unnamed.more = fmt::format(R"(,"extensions":{{"{}":{{}}}})", name);
         expect_left_out(used, what);
         expect_left_out(required, what);
         expect_left_out(unnamed, what);
