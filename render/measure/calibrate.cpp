@@ -289,7 +289,7 @@ Result<void> Run::levers(Calibration& out) {
 
 /// With and without each effect in turns; which one comes first changes as well. The median of the pairs' differences counts.
 Result<void> Run::prices(Calibration& out) {
-    constexpr int pairs = 31;
+    const int pairs = options_.quick ? 9 : 21;
     std::vector<PricePoint> points;
     for (const PriceCell& cell : scene_.prices) {
         if (progress_.stopped()) return stopped;
