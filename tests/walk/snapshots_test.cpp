@@ -1,10 +1,14 @@
-// Snapshots: which frames are kept, what the frame before showed, and what of it is a pop.
+// Snapshots: which frames are kept, what the frame before showed, what of it is a pop, and shadows of what moves.
 #include "tools/walk/snapshots.hpp"
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <set>
 #include <utility>
+
+#include "tests/engine/moving_frame.hpp"
+#include "tests/engine/moving_lawn.hpp"
 
 namespace surefoot {
 namespace {
@@ -63,6 +67,47 @@ TEST(Snapshots, WhatCameIntoViewIsNoPop) {
     EXPECT_EQ(last_cut({{1, 2}}, {{3, 8}, {4, 9}}), (Pairs{{1, 2}})) << "their ancestor was shown";
     EXPECT_EQ(last_cut({{3, 7}, {4, 9}}, {{1, 2}}), (Pairs{{3, 7}, {4, 9}})) << "its descendants were shown";
     EXPECT_EQ(last_cut({{0, 0}}, {{2, 5}, {3, 8}}), (Pairs{{0, 0}}));
+}
+
+TEST(Snapshots, ShowShadowsOfWhatMovesIfTheirFrameDid) {
+    EngineOptions options;
+    options.device.viewport = test::lawn_picture;
+    options.device.switches = {model::effect_moving_shadow};
+    auto opened = Engine::open(test::baked_lawn(), model::default_costs(), options);
+    if (!opened) {
+        ASSERT_EQ(opened.error().kind, ErrorKind::unsupported) << opened.error().text();
+        GTEST_SKIP() << "EGL is not there, or a sanitizer allows no GL";
+    }
+    Engine& engine = **opened;
+    engine.device().draws.plays();
+    prepare::PreparedFrame prepared;
+    engine.reserve(prepared);
+    const Pose pose = test::over_the_lawn();
+    SubmitLimits limits;
+    limits.limit_us = 1e6;
+    const SubmitReport report = test::moving_frame(engine, prepared, pose, 1, 1e6, limits);
+    ASSERT_TRUE(report.shadow_shown);
+    auto frame = engine.device().read_pixels();
+    ASSERT_TRUE(frame.ok());
+
+    walk::SnapshotStore store(1, 2, engine.drawn_capacity());
+    const rt::ShownLight light;
+    for (const bool shadow : {true, false})
+        store.remember(0, 1, pose, 1, 1, rt::TextureFilter::automatic, 0, engine.drawn(), {}, light, {}, shadow);
+    const auto with = render_snapshot(engine, store.snapshots()[0]), without = render_snapshot(engine, store.snapshots()[1]);
+    ASSERT_TRUE(with.ok() && without.ok());
+    EXPECT_EQ(with->walk, frame->rgba);
+    EXPECT_EQ(with->full, frame->rgba) << "full detail has what the scene calls for";
+    EXPECT_EQ(without->full, frame->rgba);
+    EXPECT_EQ(with->mse, 0);
+    EXPECT_GT(without->mse, 0) << "what a frame did not show its picture does not either";
+
+    engine.hide_effects(0);
+    walk::FrameSnapshot off = store.snapshots()[0];
+    off.light.on.shadows = false;
+    const auto hidden = render_snapshot(engine, off);
+    ASSERT_TRUE(hidden.ok());
+    EXPECT_EQ(hidden->full, without->walk) << "switched off, it is called for by nothing";
 }
 
 }  // namespace

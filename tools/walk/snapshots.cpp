@@ -34,7 +34,8 @@ SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std
 
 void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
                              rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
-                             std::span<const gl::DrawItem> culled, const rt::ShownLight& light, const rt::Switches& parts) {
+                             std::span<const gl::DrawItem> culled, const rt::ShownLight& light, const rt::Switches& parts,
+                             bool shadow) {
     if (every_ == 0 || used_ == snapshots_.size()) return;
     if (frame % every_ != 0) {
         if ((frame + 1) % every_ == 0) remember_last(filter, drawn, culled);
@@ -51,6 +52,7 @@ void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pos
     snapshot.triangles = triangles;
     snapshot.light = light;
     snapshot.parts = parts;
+    snapshot.shadow = shadow;
     snapshot.items.assign(drawn.begin(), drawn.end());
     ++used_;
     if (every_ == 1 && used_ < snapshots_.size()) remember_last(filter, drawn, culled);
@@ -114,6 +116,11 @@ void add_top_view(const Engine& engine, const FrameSnapshot& snapshot, report::R
 
 }  // namespace
 
+void draw_as_in(Engine& engine, const FrameSnapshot& snapshot, std::span<const gl::DrawItem> items, rt::TextureFilter filter) {
+    if (snapshot.shadow) engine.refresh_shadow(snapshot.pose);
+    engine.draw_unbudgeted(snapshot.pose, items, snapshot.resolution, filter);
+}
+
 Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapshot& snapshot) {
     report::ReportSnapshot out;
     out.frame = snapshot.frame;
@@ -131,16 +138,17 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     engine.set_time(snapshot.time_s);
     const model::EffectMask hidden = hidden_effects(snapshot.light.on), left_out = hidden | hidden_effects(snapshot.parts);
     engine.hide_effects(left_out);
-    engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
+    draw_as_in(engine, snapshot, snapshot.items, snapshot.filter);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
     engine.hide_effects(hidden);
+    engine.refresh_shadow(snapshot.pose);  // full detail has all that the scene calls for
     engine.draw_unbudgeted(snapshot.pose, full);
     auto reference = engine.device().read_pixels();
     if (!reference) return reference.error();
     if (!snapshot.last_items.empty()) {
         engine.hide_effects(left_out);
-        engine.draw_unbudgeted(snapshot.pose, last_cut_at(engine.model(), snapshot), snapshot.resolution, snapshot.last_filter);
+        draw_as_in(engine, snapshot, last_cut_at(engine.model(), snapshot), snapshot.last_filter);
         auto before = engine.device().read_pixels();
         if (!before) return before.error();
         out.pops_compared = true;
@@ -179,7 +187,7 @@ Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::
         show_light(engine, snapshot.light);
         engine.set_time(snapshot.time_s);
         engine.hide_effects(hidden_effects(snapshot.light.on) | hidden_effects(snapshot.parts));
-        engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
+        draw_as_in(engine, snapshot, snapshot.items, snapshot.filter);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();
         auto written = image::write_png(fmt::format("{}/{:05}.png", dir, i), image->width, image->height, image->rgba);

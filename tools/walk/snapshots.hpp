@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct FrameSnapshot {
     rt::TextureFilter filter = rt::TextureFilter::automatic, last_filter = rt::TextureFilter::automatic;  ///< of last_items
     std::uint64_t triangles = 0;
     rt::ShownLight light;
-    rt::Switches parts;  ///< of it, that were drawn
+    rt::Switches parts;   ///< of it, that were drawn
+    bool shadow = false;  ///< it showed the shadow map of what moves
     std::vector<gl::DrawItem> items;
     std::vector<gl::DrawItem> last_items;  ///< the frame before's, those outside its view included; empty: none was kept
 };
@@ -41,7 +43,8 @@ public:
     /// On the frame thread, after each frame. Frames that are not due, or beyond the store, are passed over.
     void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
                   rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
-                  std::span<const gl::DrawItem> culled = {}, const rt::ShownLight& light = {}, const rt::Switches& parts = {});
+                  std::span<const gl::DrawItem> culled = {}, const rt::ShownLight& light = {}, const rt::Switches& parts = {},
+                  bool shadow = false);
     [[nodiscard]] const std::vector<FrameSnapshot>& snapshots() const { return snapshots_; }
     [[nodiscard]] std::size_t used() const { return used_; }
 
@@ -57,6 +60,11 @@ private:
 /// What the frame before's cut shows at the snapshot's pose. Nodes that only came into view with this frame are drawn as it draws
 /// them: they are no pop. Allocates.
 std::vector<gl::DrawItem> last_cut_at(const model::Model& model, const FrameSnapshot& snapshot);
+
+/// Draws items at the resolution and with the filter of a snapshot, in the light, at the time and without the effects that were
+/// set. If its frame showed shadows of what moves, they are drawn anew for its moment: the frame's own may be
+/// MovingShadow::max_off_px beside.
+void draw_as_in(Engine& engine, const FrameSnapshot& snapshot, std::span<const gl::DrawItem> items, rt::TextureFilter filter);
 
 /// Draws a snapshot again, and full detail, and measures the difference; with the top view of what was drawn. Where the items of
 /// the frame before were kept, draws them too: what changes is the popping.

@@ -426,7 +426,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     keep(record);
     snapshots_.remember(record.frame, walk_time_s(), now_.pose, record.accuracy, record.resolution, record.filter,
                         record.triangles, engine_.drawn(), engine_.culled(), record.light,
-                        rt::parts_left(record.light.on, record.dropped_parts));
+                        rt::parts_left(record.light.on, record.dropped_parts), record.shadow_shown);
 }
 
 }  // namespace surefoot::walk

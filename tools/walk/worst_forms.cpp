@@ -136,7 +136,7 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
     const model::Model& model = engine_.model();
     const std::vector<gl::DrawItem> full = engine_.full_detail(snapshot.pose);
     if (snapshot.resolution < 1) {
-        engine_.draw_unbudgeted(snapshot.pose, full, snapshot.resolution, snapshot.filter);
+        draw_as_in(engine_, snapshot, full, snapshot.filter);
         auto blurred = engine_.device().read_pixels();
         if (!blurred) return blurred.error();
         of_resolution_ += measure::snr(blurred->rgba, picture.full).mse;
@@ -156,7 +156,7 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
         std::vector<gl::DrawItem> items = snapshot.items;
         items.erase(items.begin() + static_cast<std::ptrdiff_t>(i));
         items.insert(items.end(), below[i].begin(), below[i].end());
-        engine_.draw_unbudgeted(snapshot.pose, items, snapshot.resolution, snapshot.filter);
+        draw_as_in(engine_, snapshot, items, snapshot.filter);
         auto with = engine_.device().read_pixels();
         if (!with) return with.error();
         const double goes = picture.mse - measure::snr(with->rgba, picture.full).mse;
