@@ -182,6 +182,14 @@ std::string effects_text(model::EffectMask mask, std::string_view between) {
 
 namespace {
 
+// Cuts what is outside of a box: in captures of the image cache alone.
+constexpr std::string_view box_declarations = "uniform vec3 box_low, box_high;\nout float gl_ClipDistance[6];\n";
+constexpr std::string_view box_code =
+    "    for (int i = 0; i < 3; ++i) {\n"
+    "        gl_ClipDistance[2 * i] = world[i] - box_low[i];\n"
+    "        gl_ClipDistance[2 * i + 1] = box_high[i] - world[i];\n"
+    "    }\n";
+
 /// The program of an effect that is drawn behind everything.
 gl::ProgramSource background_program(const EffectModule& module) {
     gl::ProgramSource source;
@@ -227,20 +235,23 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
     // A colour that no effect varies over the triangle needs no interpolation.
     const std::string flat = varies ? "" : "flat ";
     source.name = effects_text(mask);
-    source.vertex =
-        "#version 430 core\n"
-        "in vec3 position;\n"
-        "in vec4 world_rows[3];\n"
-        "in vec4 material_colour;\n"
-        "uniform mat4 view_projection;\n" +
-        flat + "out vec4 v_colour;\n" + vertex_declarations +
-        "void main() {\n"
-        "    vec4 local = vec4(position, 1.0);\n"
-        "    vec3 world = vec3(dot(world_rows[0], local), dot(world_rows[1], local), dot(world_rows[2], local));\n"
-        "    v_colour = material_colour;\n" +
-        vertex_code + light.vertex_after +
-        "    gl_Position = view_projection * vec4(world, 1.0);\n"
-        "}\n";
+    const auto vertex = [&](std::string_view cut_declarations, std::string_view cut_code) {
+        return "#version 430 core\n"
+               "in vec3 position;\n"
+               "in vec4 world_rows[3];\n"
+               "in vec4 material_colour;\n"
+               "uniform mat4 view_projection;\n" +
+               flat + "out vec4 v_colour;\n" + std::string(cut_declarations) + vertex_declarations +
+               "void main() {\n"
+               "    vec4 local = vec4(position, 1.0);\n"
+               "    vec3 world = vec3(dot(world_rows[0], local), dot(world_rows[1], local), dot(world_rows[2], local));\n"
+               "    v_colour = material_colour;\n" +
+               vertex_code + light.vertex_after + std::string(cut_code) +
+               "    gl_Position = view_projection * vec4(world, 1.0);\n"
+               "}\n";
+    };
+    source.vertex = vertex({}, {});
+    source.vertex_in_box = vertex(box_declarations, box_code);
     const auto fragment = [&](const std::string& code) {
         return "#version 430 core\n" + flat + "in vec4 v_colour;\n" + fragment_declarations +
                "out vec4 pixel;\n"

@@ -56,6 +56,7 @@ namespace surefoot::gl {
     X(Flush, PFNGLFLUSHPROC)                                                   \
     X(FramebufferRenderbuffer, PFNGLFRAMEBUFFERRENDERBUFFERPROC)               \
     X(FramebufferTexture2D, PFNGLFRAMEBUFFERTEXTURE2DPROC)                     \
+    X(FramebufferTextureLayer, PFNGLFRAMEBUFFERTEXTURELAYERPROC)               \
     X(FrontFace, PFNGLFRONTFACEPROC)                                           \
     X(GenBuffers, PFNGLGENBUFFERSPROC)                                         \
     X(GenFramebuffers, PFNGLGENFRAMEBUFFERSPROC)                               \
@@ -82,6 +83,7 @@ namespace surefoot::gl {
     X(ReadPixels, PFNGLREADPIXELSPROC)                                         \
     X(RenderbufferStorage, PFNGLRENDERBUFFERSTORAGEPROC)                       \
     X(RenderbufferStorageMultisample, PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC) \
+    X(Scissor, PFNGLSCISSORPROC)                                               \
     X(ShaderSource, PFNGLSHADERSOURCEPROC)                                     \
     X(TexImage2D, PFNGLTEXIMAGE2DPROC)                                         \
     X(TexParameterf, PFNGLTEXPARAMETERFPROC)                                   \

@@ -52,6 +52,28 @@ struct ShadowPlace {
     float texel = 0;  ///< in depth
 };
 
+/// Sides of a layer of the image cache, in texels.
+constexpr std::uint32_t picture_layer_px = 256;
+
+/// Captures that wait for the next picture at most.
+constexpr std::uint32_t max_captures = 64;
+
+/// Where a picture of the cache lies: a square of texels in one layer.
+struct PicturePlace {
+    std::uint16_t layer = 0, column = 0, row = 0, texels = 0;
+};
+
+/// A picture of the image cache: all that lies in a box, seen from `eye`, on a plane across `forward`.
+struct CachePicture {
+    PicturePlace place;
+    dvec3 eye{0.0};                                        ///< world
+    dvec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};  ///< unit, across each other
+    double plane_m = 1;                                    ///< depth of the plane along forward
+    dvec2 low_m{0.0};                                      ///< on the plane: lower left corner of the square, along right and up
+    double side_m = 1;                                     ///< on the plane
+    Box box;                                               ///< world: cuts what is captured; its front faces show the picture
+};
+
 /// What programs may read of the moment that a picture shows.
 struct PictureMoment {
     model::Daylight light;  ///< `background` is the colour itself
@@ -59,7 +81,8 @@ struct PictureMoment {
     dvec3 eye{0.0};         ///< in the world, m
     float pixel_rad = 0;    ///< angle of a pixel in the middle
     ShadowPlace shadow = {};
-    mat4 to_direction{1.0F};  ///< from -1..1, -1..1, 1, 1 of the picture to a direction in the world; for what is behind all
+    vec3 box_low{0}, box_high{0};  ///< of a capture: what it is cut to, relative to the eye
+    mat4 to_direction{1.0F};       ///< from -1..1, -1..1, 1, 1 of the picture to a direction in the world; for what is behind all
 };
 
 /// A uniform of a program: its GLSL name, of `float`, `vec3` or `mat4`, and what writes its 1, 3 or 16 floats. On the frame
@@ -70,8 +93,8 @@ struct UniformSource {
     void (*write)(const PictureMoment& moment, float* to);
 };
 
-/// Texture units: the pictures of materials, and the shadow map.
-constexpr int material_unit = 0, shadow_unit = 1;
+/// Texture units: the pictures of materials, the shadow map, and the image cache.
+constexpr int material_unit = 0, shadow_unit = 1, picture_unit = 2;
 /// A sampler of a program, and the texture unit that it reads.
 struct SamplerSource {
     const char* name;
@@ -84,6 +107,8 @@ struct ProgramSource {
     std::string name{};  ///< of the state class, for people: "texture sun"
     /// In place of `fragment` where pixels have several samples: its alpha is the covered share of the pixel. Empty: `fragment`.
     std::string fragment_samples{};
+    /// In place of `vertex` in captures of the image cache: cuts off what is outside of `box_low` to `box_high`.
+    std::string vertex_in_box{};
     std::vector<UniformSource> uniforms{};  ///< those that it declares, but `view_projection`
     std::vector<SamplerSource> samplers{};
 };
@@ -142,15 +167,17 @@ struct DeviceOptions {
     std::vector<model::EffectMask> switches;
     /// Pictures have what the model calls for behind everything (model::background_effects). It may be among the switches.
     bool background = true;
-    bool second_filter = false;  ///< prepares set_filter(), where `filter` is automatic and the driver is software
+    bool second_filter = false;        ///< prepares set_filter(), where `filter` is automatic and the driver is software
+    std::uint32_t picture_layers = 0;  ///< of the image cache, 256 KiB each; 0: load() makes nothing of it
 };
 
 /// Counts and times of one drawn frame.
 struct FrameStats {
     std::uint32_t items = 0, draws = 0, batches = 0, state_changes = 0;
     std::uint64_t triangles = 0;
-    float resolution = 1;                                    ///< the step that is drawn, of model::resolution_steps
-    std::uint32_t samples = 1;                               ///< Device::samples()
+    std::uint32_t pictures = 0, captures = 0;  ///< of the image cache: drawn, and made anew; what a capture draws counts nowhere
+    float resolution = 1;                      ///< the step that is drawn, of model::resolution_steps
+    std::uint32_t samples = 1;                 ///< Device::samples()
     rt::TextureFilter filter = rt::TextureFilter::bilinear;  ///< that textures are read by
 };
 
@@ -230,6 +257,22 @@ public:
     virtual void end_items() REQUIRES(draws) = 0;
     /// Enlarges a frame below full resolution, and waits for all slices: the picture is whole.
     virtual void finish_frame() REQUIRES(draws) = 0;
+
+    // ---- the image cache: pictures made while walking; the same rules ----
+    /// Layers that load() made for it. 0: none were requested, or picture_reason() has the reason.
+    [[nodiscard]] virtual std::uint32_t picture_layers() const { return 0; }
+    /// Why there are fewer layers than DeviceOptions::picture_layers; else empty.
+    [[nodiscard]] virtual std::string picture_reason() const { return {}; }
+    /// The next begin_frame() or begin_rest() draws these items into a square of a layer, with its light, time and effects, but
+    /// without moving shadows. They must live until then. Only parts of leaves that are not blended are drawn.
+    /// False: nothing will be drawn. It has no layers, the place is outside of them, or max_captures already wait.
+    virtual bool capture_picture(const CachePicture& picture, std::span<const DrawItem> items) REQUIRES(draws) {
+        static_cast<void>(picture), static_cast<void>(items);
+        return false;
+    }
+    /// Draws pictures into the frame in this order: back to front. After all draw(), and before end_items(), in the current
+    /// slice. Pictures that cannot be seen from the eye of the frame are left out: its box holds it, or their plane is behind it.
+    virtual void draw_pictures(std::span<const CachePicture> back_to_front) REQUIRES(draws) { static_cast<void>(back_to_front); }
 
     // ---- a picture at rest: drawn over several frames into a second target, while the shown picture stays; the same rules ----
     [[nodiscard]] virtual RestSupport rest_support() const REQUIRES(draws) { return RestSupport::none; }

@@ -84,7 +84,7 @@ void GlDevice::set_filter(rt::TextureFilter filter) {
 
 /// A smaller picture is enlarged: it shows the mip levels of the whole one.
 void GlDevice::set_texture_detail(std::size_t step) {
-    if (step == detail_step_ || !options_.smaller) return;
+    if (step == detail_step_ || !options_.smaller || lost_) return;
     detail_step_ = step;
     set_mip_bias(gl_, tables_.textures, resources_, std::log2(model::resolution_steps[step]));
     state_known_ = false;
@@ -139,6 +139,7 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     resources_ = std::move(*resources);
     if (auto shadow = load_shadow(model, programs); !shadow) return shadow.error();
     if (auto behind = load_background(model, programs); !behind) return behind.error();
+    load_pictures(model, programs);
     set_filter_ = filter();
     detail_step_ = 0;
     light_ = model::daylight_of_model(model.sun_direction, model.light);
@@ -200,26 +201,32 @@ void GlDevice::warm_up_parts(std::span<const Pending> kinds) {
         set_filter((way & second) != 0 ? rt::TextureFilter::trilinear : filter());
         begin_frame(Pose{}, (way & smaller) != 0 ? model::resolution_steps.back() : 1.0F);
         for (const Pending& pending : kinds) {
-            const State state = state_of(pending);
-            if (used_instances_ >= frame_.instances.size()) break;
             set_blending(is_blended(tables_.parts[pending.part]));
-            const std::uint32_t at = used_commands_;
-            write_instance(pending, used_instances_);
-            append_command(pending, used_instances_, at);
-            frame_.commands[at].index_count = std::min(3U, frame_.commands[at].index_count);
-            apply(state);
-            issue(state, at, 1);
-            ++used_instances_;
+            warm_up_part(pending);
         }
         set_blending(false);
+        warm_up_captures(kinds);
         finish_frame();
     }
+}
+
+void GlDevice::warm_up_part(const Pending& pending) {
+    if (used_instances_ >= frame_.instances.size()) return;
+    const State state = state_of(pending);
+    const std::uint32_t at = used_commands_;
+    write_instance(pending, used_instances_);
+    append_command(pending, used_instances_, at);
+    frame_.commands[at].index_count = std::min(3U, frame_.commands[at].index_count);
+    apply(state);
+    issue(state, at, 1);
+    ++used_instances_;
 }
 
 void GlDevice::warm_up_passes() {
     // A driver may compile the enlarging pass for each size.
     for (const float resolution : model::resolution_steps) {
         begin_frame(Pose{}, resolution);
+        warm_up_pictures();
         finish_frame();
     }
     if (!caster_kinds_.empty()) {
@@ -343,8 +350,9 @@ void GlDevice::begin_rest(const Pose& pose, const dvec2& offset_px) {
             view_projection_[c][1] += moved.y * view_projection_[c][3];
         }
     }
-    if (lost_ || rest_.picture.framebuffer == 0) return;
     set_texture_detail(0);
+    draw_captures();
+    if (lost_ || rest_.picture.framebuffer == 0) return;
     rest_resolved_ = false;
     draw_into(drawn_into(rest_.picture, 0));
     clear_target();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/draw/tables.hpp"
+#include "render/gl/cache_pictures.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/enlarge_pixels.hpp"
 #include "render/gl/resources.hpp"
@@ -42,6 +43,12 @@ public:
     [[nodiscard]] bool receives_shadows() const override { return shadow_.framebuffer != 0; }
     void refresh_shadow(const ShadowView& view, std::span<const DrawItem> casters) override REQUIRES(draws);
     void show_shadow(bool shown) override REQUIRES(draws) { shadow_shown_ = shown; }
+    [[nodiscard]] std::uint32_t picture_layers() const override {
+        return static_cast<std::uint32_t>(pictures_.framebuffers.size());
+    }
+    [[nodiscard]] std::string picture_reason() const override { return picture_reason_; }
+    bool capture_picture(const CachePicture& picture, std::span<const DrawItem> items) override REQUIRES(draws);
+    void draw_pictures(std::span<const CachePicture> back_to_front) override REQUIRES(draws);
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
@@ -84,6 +91,14 @@ private:
         bool operator==(const State&) const = default;
     };
 
+    /// What parts are drawn into.
+    enum class Drawing : std::uint8_t { picture, shadow, capture };
+    /// A capture that waits for the next picture.
+    struct WaitingCapture {
+        CachePicture picture;
+        std::span<const DrawItem> items;
+    };
+
     GlDevice(std::unique_ptr<Context> context, const DeviceOptions& options);
     Result<void> set_up() REQUIRES(draws);
     std::vector<model::EffectMask> find_programs() REQUIRES(draws);
@@ -91,6 +106,7 @@ private:
     void warm_up() REQUIRES(draws);
     [[nodiscard]] std::vector<Pending> one_of_each_state() const REQUIRES(draws);
     void warm_up_parts(std::span<const Pending> kinds) REQUIRES(draws);
+    void warm_up_part(const Pending& pending) REQUIRES(draws);
     void warm_up_passes() REQUIRES(draws);
     void copy_to_window(const FittedPicture& fit, bool half_turn) REQUIRES(draws);
     void start_picture(const Pose& pose) REQUIRES(draws);
@@ -115,16 +131,28 @@ private:
     Result<void> load_shadow(const model::Model& model, const ProgramFactory& programs) REQUIRES(draws);
     void draw_shadow_map() REQUIRES(draws);
     void place_shadow() REQUIRES(draws);
+    void load_pictures(const model::Model& model, const ProgramFactory& programs) REQUIRES(draws);
+    Result<void> compile_captures(const model::Model& model, const ProgramFactory& programs) REQUIRES(draws);
+    void draw_captures() REQUIRES(draws);
+    void begin_captures() REQUIRES(draws);
+    void end_captures() REQUIRES(draws);
+    void begin_capture(const CachePicture& picture) REQUIRES(draws);
+    void draw_capture(const CachePicture& picture, std::span<const DrawItem> items) REQUIRES(draws);
+    void issue_pictures(std::size_t first) REQUIRES(draws);
+    void warm_up_captures(std::span<const Pending> kinds) REQUIRES(draws);
+    void warm_up_pictures() REQUIRES(draws);
+    [[nodiscard]] bool has_capture_program(const draw::DrawPart& part) const REQUIRES(draws);
     [[nodiscard]] std::uint32_t program_of(const draw::DrawPart& part) const REQUIRES(draws) {
-        if (draws_shadow_) return caster_programs_[part.program];
-        return without_[variant_ * tables_.masks.size() + part.program];
+        if (drawing_ == Drawing::shadow) return caster_programs_[part.program];
+        const std::vector<std::uint16_t>& programs = drawing_ == Drawing::capture ? capture_programs_ : without_;
+        return programs[variant_ * tables_.masks.size() + part.program];
     }
     /// As it is drawn now: a switchable effect that is left out is none.
     [[nodiscard]] bool is_blended(const draw::DrawPart& part) const REQUIRES(draws) {
         return part.blended && (off_ & model::effect_blend) == 0;
     }
     [[nodiscard]] std::uint32_t texture_of(const draw::DrawPart& part) const REQUIRES(draws) {
-        if (draws_shadow_ && (tables_.masks[part.program] & model::effect_alpha_mask) == 0) return model::none;
+        if (drawing_ == Drawing::shadow && (tables_.masks[part.program] & model::effect_alpha_mask) == 0) return model::none;
         return (off_ & model::effect_texture) != 0 ? model::none : part.texture;
     }
     [[nodiscard]] GeometryBuffers geometry() const REQUIRES(draws);
@@ -175,7 +203,13 @@ private:
     std::vector<DrawItem> caster_kinds_ GUARDED_BY(draws);          ///< one of each such program, to warm it up
     ShadowView shadow_view_ GUARDED_BY(draws);                      ///< of the map as it is drawn, or will be
     std::span<const DrawItem> casters_ GUARDED_BY(draws);           ///< of the map that waits to be drawn; empty: none does
-    bool shadow_shown_ GUARDED_BY(draws) = false, draws_shadow_ GUARDED_BY(draws) = false;
+    bool shadow_shown_ GUARDED_BY(draws) = false;
+    Drawing drawing_ GUARDED_BY(draws) = Drawing::picture;
+    CachePictures pictures_;
+    std::string picture_reason_;
+    std::vector<std::uint16_t> capture_programs_ GUARDED_BY(draws);  ///< beside those of `without_`; no_program: it draws none
+    std::vector<WaitingCapture> captures_ GUARDED_BY(draws);
+    std::size_t capture_count_ GUARDED_BY(draws) = 0, used_picture_vertices_ GUARDED_BY(draws) = 0;
     std::uint64_t frame_number_ GUARDED_BY(draws) = 0;
     FrameStats stats_ GUARDED_BY(draws);
     std::vector<Pending> pending_ GUARDED_BY(draws), blended_ GUARDED_BY(draws);

@@ -51,8 +51,9 @@ void GlDevice::begin_frame(const Pose& pose, float resolution) {
     shown_.pixel_rad /= stats_.resolution;
     stats_.samples = samples();
     stats_.filter = set_filter_;
-    if (lost_) return;
     set_texture_detail(step_);
+    draw_captures();
+    if (lost_) return;
     draw_into(drawn_into(targets_.steps[step_], step_));
     clear_target();
 }
@@ -65,6 +66,7 @@ void GlDevice::start_picture(const Pose& pose) {
     slices_ = slices_done_ = 0;
     blended_count_ = 0;
     used_instances_ = used_commands_ = 0;
+    used_picture_vertices_ = 0;
     state_known_ = false;
     shown_ = {light_, time_s_, pose.position, static_cast<float>(model::pixel_angle(pose, options_.viewport))};
     shown_.light.background *= vec3(options_.sky[0], options_.sky[1], options_.sky[2]);
@@ -126,7 +128,7 @@ void GlDevice::set_coverage(bool on) {
 GlDevice::State GlDevice::state_of(const Pending& pending) const {
     const draw::DrawPart& part = tables_.parts[pending.part];
     const draw::Placed& placed = tables_.placements[tables_.reps[pending.rep].placement];
-    return {program_of(part), texture_of(part), draws_shadow_ ? draw::Culling::none : draw::culling(part, placed)};
+    return {program_of(part), texture_of(part), drawing_ == Drawing::shadow ? draw::Culling::none : draw::culling(part, placed)};
 }
 
 void GlDevice::draw(std::span<const DrawItem> items) { draw_parts(items, Parts::all); }
@@ -153,6 +155,7 @@ void GlDevice::draw_parts(std::span<const DrawItem> items, Parts parts) {
         for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
             const draw::DrawPart& part = tables_.parts[p];
             if (part.index_count == 0 || (parts != Parts::all && is_blended(part) != (parts == Parts::blended))) continue;
+            if (drawing_ == Drawing::capture && !has_capture_program(part)) continue;
             if (is_blended(part)) {
                 if (blended_count_ == blended_.size()) submit_blended();  // out of order rather than not at all
                 // Far first, part by part; ids break ties.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "render/draw/tables.hpp"
+#include "render/gl/picture_faces.hpp"
 #include "render/gl/program.hpp"
 #include "render/model/item_costs.hpp"
 #include "render/model/moving.hpp"
@@ -75,6 +76,15 @@ public:
     void finish_frame() override REQUIRES(draws) {
         if (stats_.resolution < 1) frame_us_ += null_.cost_scale * factor_ * null_.enlarge_us;
     }
+    [[nodiscard]] std::uint32_t picture_layers() const override { return model_ != nullptr ? options_.picture_layers : 0; }
+    bool capture_picture(const CachePicture& picture, std::span<const DrawItem>) override REQUIRES(draws) {
+        if (captures_ == max_captures || !lies_within(picture.place, picture_layers())) return false;
+        ++captures_;
+        return true;
+    }
+    void draw_pictures(std::span<const CachePicture> back_to_front) override REQUIRES(draws) {
+        if (picture_layers() > 0) stats_.pictures += static_cast<std::uint32_t>(back_to_front.size());
+    }
     [[nodiscard]] RestSupport rest_support() const override REQUIRES(draws) {
         return options_.rest ? RestSupport::samples : RestSupport::none;
     }
@@ -120,6 +130,7 @@ private:
     double submit_us_ GUARDED_BY(draws) = 0, raster_us_ GUARDED_BY(draws) = 0, factor_ GUARDED_BY(draws) = 1;
     double before_us_ GUARDED_BY(draws) = 0, frame_us_ GUARDED_BY(draws) = 0, other_us_ GUARDED_BY(draws) = 0;
     std::uint32_t slices_ GUARDED_BY(draws) = 0, blended_ GUARDED_BY(draws) = 0;
+    std::uint32_t captures_ GUARDED_BY(draws) = 0;  ///< that wait for the next picture
 };
 
 Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& programs) {
@@ -158,6 +169,7 @@ void NullDevice::begin_frame(const Pose& pose, float resolution) {
     stats_.resolution = model::resolution_steps[model::resolution_step(resolution)];
     stats_.samples = samples();
     stats_.filter = set_filter_;
+    stats_.captures = std::exchange(captures_, 0);
     scale_ = model::scaled(model::make_view_scale(pose, options_.viewport), stats_.resolution);
     submit_us_ = raster_us_ = other_us_ = 0;
     slices_ = blended_ = 0;
@@ -191,6 +203,7 @@ void NullDevice::draw(std::span<const DrawItem> items) {
 }
 
 void NullDevice::begin_rest(const Pose& pose, const dvec2&) {
+    captures_ = 0;
     eye_ = pose.position;
     scale_ = model::make_view_scale(pose, options_.viewport);
     charge_pass();

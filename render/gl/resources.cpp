@@ -59,14 +59,9 @@ void free_frame_buffers(const Api& gl, FrameBuffers& frame) {
 
 template <class T>
 Result<std::span<T>> make_mapped(const Api& gl, GLenum target, GLuint& buffer, std::uint32_t count) {
-    const auto bytes = static_cast<GLsizeiptr>(static_cast<std::size_t>(count) * sizeof(T));
-    gl.GenBuffers(1, &buffer);
-    gl.BindBuffer(target, buffer);
-    gl.BufferStorage(target, bytes, nullptr, mapped_bits);
-    void* memory = gl.MapBufferRange(target, 0, bytes, mapped_bits);
+    void* memory = make_mapped_buffer(gl, target, buffer, static_cast<std::size_t>(count) * sizeof(T));
     if (memory == nullptr)
         return Error{"frame buffers", "The buffers cannot be mapped", "Lower max_items, or free memory", ErrorKind::no_memory};
-    std::fill_n(static_cast<std::byte*>(memory), static_cast<std::size_t>(bytes), std::byte{0});  // touch every page now
     return std::span<T>(static_cast<T*>(memory), count);
 }
 
@@ -87,6 +82,15 @@ Result<void> check_errors(const Api& gl, const std::string& place, const std::st
     if (error == GL_NO_ERROR) return {};
     if (error == GL_OUT_OF_MEMORY) return Error{place, "The device is out of memory", remedy, ErrorKind::no_memory};
     return Error{place, "The driver reports GL error " + std::to_string(error), remedy, ErrorKind::no_device};
+}
+
+void* make_mapped_buffer(const Api& gl, GLenum target, GLuint& buffer, std::size_t bytes) {
+    gl.GenBuffers(1, &buffer);
+    gl.BindBuffer(target, buffer);
+    gl.BufferStorage(target, static_cast<GLsizeiptr>(bytes), nullptr, mapped_bits);
+    void* memory = gl.MapBufferRange(target, 0, static_cast<GLsizeiptr>(bytes), mapped_bits);
+    if (memory != nullptr) std::fill_n(static_cast<std::byte*>(memory), bytes, std::byte{0});
+    return memory;
 }
 
 Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items) {

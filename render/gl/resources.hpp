@@ -2,6 +2,7 @@
 // Each function makes all of it or nothing: if a step fails, what the earlier steps made is freed.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +22,9 @@ struct DrawCommand {
     std::uint32_t first_instance;
 };
 static_assert(sizeof(DrawCommand) == 20);
+
+/// Makes a buffer of this size that is mapped for its life, and touches every page of it. Null: it cannot be mapped.
+void* make_mapped_buffer(const Api& gl, GLenum target, GLuint& buffer, std::size_t bytes);
 
 /// Instance and command buffers, mapped for the device's life, so that the frame writes them without a GL call.
 struct FrameBuffers {

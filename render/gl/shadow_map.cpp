@@ -108,13 +108,13 @@ void GlDevice::draw_shadow_map() {
     const mat4 of_eye = view_projection_;
     pose_.position = shadow_view_.origin;
     view_projection_ = shadow_view_.from_origin;
-    draws_shadow_ = true;
+    drawing_ = Drawing::shadow;
     constexpr auto side = static_cast<GLsizei>(shadow_map_px);
     draw_into({shadow_.framebuffer, 0, side, side});
     gl_.ClearDepthf(0.0F);
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
     draw_parts(casters, Parts::opaque);
-    draws_shadow_ = false;
+    drawing_ = Drawing::picture;
     pose_ = eye;
     view_projection_ = of_eye;
     for (const std::uint32_t program : caster_programs_) resources_.programs[program].frame = 0;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <memory>
@@ -165,6 +166,66 @@ TEST(Allocation, a_shadow_map_makes_none_and_compiles_nothing) {
     frame(**device, scene.items);
     counting = false;
     EXPECT_EQ(counted, 0);
+}
+
+TEST(Allocation, pictures_of_the_image_cache_make_none_and_compile_nothing) {
+    if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
+    test::SmallModel small;
+    model::Material leaf = test::plain(1, 1, 1, 1, model::effect_texture | model::effect_alpha_mask);
+    leaf.texture = small.texture({255, 0, 0, 255}, {0, 0, 255, 0}, 64);
+    const std::array materials{small.material(leaf), small.material(test::plain(0, 1, 0, 1, model::effect_sun)),
+                               small.material(test::plain(0, 1, 0, 0.5F, model::effect_blend))};
+    Counted scene;
+    for (int i = 0; i < 99; ++i) {
+        const auto node =
+            small.square(materials[static_cast<std::size_t>(i) % 3], test::at(0.02 * i - 1, 0, 8.0 - 0.01 * i), 0.1F);
+        scene.items.push_back({node, node - 1});
+    }
+    scene.model = small.finish();
+    for (const std::uint32_t samples : {1U, 4U}) {
+        gl::DeviceOptions options;
+        options.viewport = {64, 64};
+        options.picture_layers = 2;
+        options.samples = samples;
+        options.second_filter = options.smaller = true;
+        options.switches = {model::effect_sun, model::effect_blend};
+        auto device = gl::open_device(options);
+        if (is_absent(device)) GTEST_SKIP() << device.error().text();
+        ASSERT_TRUE(device.ok()) << device.error().text();
+        (*device)->draws.plays();
+        ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+        ASSERT_EQ((*device)->picture_layers(), 2U);
+        std::array<gl::CachePicture, 2> pictures;
+        for (std::uint16_t i = 0; i < 2; ++i) {
+            pictures[i].place = {i, static_cast<std::uint16_t>(128 * i), 0, static_cast<std::uint16_t>(256 - 128 * i)};
+            pictures[i].eye = dvec3(0, 0, 11);
+            pictures[i].plane_m = 3;
+            pictures[i].low_m = dvec2(-1);
+            pictures[i].side_m = 2;
+            pictures[i].box = {dvec3(-0.9, -0.9, 7), dvec3(0.9, 0.9, 8 + i)};
+        }
+        Pose pose;
+        pose.position.z = 11;
+        counted = 0;
+        counting = true;
+        for (unsigned i = 0; i < 8; ++i) {
+            (*device)->set_filter(i < 4 ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear);
+            (*device)->hide_effects((i & 1U) != 0 ? model::effect_sun | model::effect_blend : 0);
+            for (const gl::CachePicture& picture : pictures) (*device)->capture_picture(picture, scene.items);
+            (*device)->begin_frame(pose, (i & 2U) != 0 ? 0.625F : 1.0F);
+            (*device)->draw(scene.items);
+            (*device)->draw_pictures(pictures);
+            (*device)->end_slice();
+            (*device)->end_items();
+            (*device)->finish_frame();
+            counting = false;
+            EXPECT_EQ((*device)->stats().captures, 2U);
+            EXPECT_EQ((*device)->stats().pictures, 2U);
+            counting = true;
+        }
+        counting = false;
+        EXPECT_EQ(counted, 0) << samples << " samples";
+    }
 }
 
 TEST(Allocation, a_sky_makes_none_and_compiles_nothing) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -33,6 +34,8 @@ struct FakeGl {
     GLuint names = 0;
     std::set<std::string> uniforms{};            ///< that programs were asked for
     int blended_passes = 0;                      ///< times that blending began
+    std::set<GLenum> enabled{};                  ///< by glEnable, and not disabled
+    std::size_t clip_planes = 0;                 ///< that were enabled at once at most
     int array_draws = 0;                         ///< calls of glDrawArrays: passes over a picture
     std::vector<std::vector<std::byte>> mapped;  ///< memory of the mapped buffers
     /// Objects of every kind, made and not deleted.
@@ -120,7 +123,14 @@ inline gl::Api fake_api() {
         return 0;
     };
     api.DrawArrays = [](GLenum, GLint, GLsizei) { ++FakeGl::get().array_draws; };
-    api.Enable = [](GLenum what) { FakeGl::get().blended_passes += what == GL_BLEND ? 1 : 0; };
+    api.Enable = [](GLenum what) {
+        FakeGl& fake = FakeGl::get();
+        fake.blended_passes += what == GL_BLEND ? 1 : 0;
+        fake.enabled.insert(what);
+        const auto first = fake.enabled.lower_bound(GL_CLIP_DISTANCE0), last = fake.enabled.upper_bound(GL_CLIP_DISTANCE7);
+        fake.clip_planes = std::max(fake.clip_planes, static_cast<std::size_t>(std::distance(first, last)));
+    };
+    api.Disable = [](GLenum what) { FakeGl::get().enabled.erase(what); };
     api.GetProgramiv = [](GLuint, GLenum, GLint* ok) { *ok = FakeGl::get().links ? GL_TRUE : GL_FALSE; };
     api.FenceSync = [](GLenum, GLbitfield) -> GLsync {
         ++FakeGl::get().syncs;
