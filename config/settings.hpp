@@ -59,6 +59,7 @@ struct Settings : rt::Switches {
     double hour_speed = 0;       ///< hours of the day in a minute of the walk
     bool motion = true;          ///< what animations move; false: all stands as at their start
     bool buy_effects = false;    ///< frames leave out parts of the light that cost more than they show
+    bool cache = false;          ///< pictures of what is far stand for it, and are made while walking
     int frame_core = -1;         ///< -1: chosen
     double rest_after_ms = 500;  ///< 0: never
     double slice_us = 1000;

@@ -85,8 +85,10 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->restless = restless_nodes(impl->model, impl->moving);
     impl->poses = model::MotionPoses(impl->model);
     if (impl->device->receives_shadows()) impl->shadow = MovingShadow(impl->model);
+    if (auto made = impl->make_pictures(); !made) return made.error();
     impl->light = model::daylight_of_model(impl->model.sun_direction, impl->model.light);
-    const std::size_t max_drawn = std::max<std::size_t>(candidates * 2, impl->unprepared.capacity());
+    const std::size_t in_pictures = impl->pictures.any() ? impl->model.nodes.size() : 0;
+    const std::size_t max_drawn = std::max<std::size_t>(candidates * 2 + in_pictures, impl->unprepared.capacity());
     impl->drawn.reserve(max_drawn);
     impl->culled.reserve(candidates);
     impl->floor.reserve(impl->model.nodes.size(), std::max<std::size_t>(candidates, impl->unprepared.capacity()));
@@ -110,6 +112,7 @@ void Engine::Impl::use(const select::SelectorEntry& entry) {
     options.prepare.full_depth = full_depth;
     preparer.reset();  // its workers first
     preparer = std::make_unique<prepare::Preparer>(model, costs, options.prepare);
+    if (pictures.any()) preparer->set_cover(&pictures.boxes());
 }
 
 const model::Model& Engine::model() const { return impl_->model; }
@@ -146,6 +149,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     out.from_s = impl_->options.motion ? hints.time_s : 0;
     out.to_s = impl_->options.motion ? hints.time_s + hints.span_s : 0;
     out.without = e.without.load(std::memory_order_relaxed);
+    out.covered = hints.covered;
     if (e.worth.any()) e.preparer->set_effect_losses(e.worth.at(e.light_hour.load(std::memory_order_relaxed)));
     e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out);
     out.full_filter_us = e.filter_costs.any() ? e.filter_costs.full_us(out) : 0.0F;
@@ -196,7 +200,8 @@ select::SelectInput Engine::Impl::input_of(const prepare::PreparedFrame& set, do
             by.factor,        target_error_rad,
             options.slice_us, by.headroom,
             &offered,         options.max_error_rad,
-            options.benefit,  last_frame_us};
+            options.benefit,  last_frame_us,
+            pictures_us};
 }
 
 double Engine::Impl::gain_of_one_more_ms(const select::SelectInput& input) const {
@@ -279,9 +284,11 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.correction = correction;
     e.begin_offers();
     e.prepay_resolution(prepared);
+    e.prepay_pictures(prepared);
     const select::SelectInput input = e.input_of(prepared, budget_us, correction, target_error_rad);
     e.offer_effects(prepared, select::Budget(input).room_us());
     e.offer_shadow(prepared);
+    e.offer_pictures(prepared, input);
     e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
     e.one_more_ms = e.gain_of_one_more_ms(input);
@@ -294,6 +301,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.take_filter();
     e.take_effects(prepared);
     e.take_shadow();
+    e.take_pictures();
     if (e.filtered || e.lever.shown != 0) e.price_slices();
     return e.cut;
 }
@@ -309,6 +317,7 @@ void Engine::hide_effects(model::EffectMask hidden) {
     if (hidden == e.hidden) return;
     e.device->draws.plays();
     e.hidden = hidden;
+    e.forget_pictures();
     e.price_without();
     e.device->hide_effects(hidden);
     e.watch.forget();
@@ -321,6 +330,7 @@ void Engine::set_light(const model::Daylight& light, float hour) {
     e.draws.plays();
     e.device->draws.plays();
     e.device->set_light(light);
+    if (!(light == e.light)) e.forget_pictures();
     e.light = light;
     e.watch.forget();
     e.rest_picture.leave();

@@ -17,6 +17,7 @@
 
 #include "render/gl/device.hpp"
 #include "render/model/cost.hpp"
+#include "render/model/covered_boxes.hpp"
 #include "render/model/model.hpp"
 #include "render/model/resolution.hpp"
 #include "render/prepare/prepared.hpp"
@@ -71,6 +72,7 @@ struct PrepareHints {
     std::array<double, model::resolution_steps.size()> planned_us{};
     double form_ratio = 1;          ///< how much more expensive full detail is against coarse forms than predicted
     double time_s = 0, span_s = 0;  ///< of what moves: the set is for pictures from this time on, and no later than the span
+    model::CoverBits covered;       ///< by Engine::cover(): the set leaves out what pictures show
 };
 
 /// A group of effects in a selection.
@@ -114,6 +116,12 @@ struct SubmitReport {
     bool at_rest = false;
     std::uint32_t rest_samples = 0;                       ///< of the shown picture: 1 is full detail; 0: it is a cut
     bool shadow_refreshed = false, shadow_shown = false;  ///< the shadow map of what moves: bought by this frame; in its picture
+    std::uint32_t pictures = 0;                           ///< of the image cache: that show a part of the frame
+    std::uint32_t pictures_made = 0;                      ///< bought by this frame
+    double pictures_us = 0;                               ///< of predicted_us: to draw them
+    double captures_us = 0;                               ///< of predicted_us and bought_us: to make them
+    std::uint64_t picture_bytes = 0;                      ///< of all pictures that the cache holds
+    std::uint32_t uncovered_items = 0;                    ///< drawn in place of pictures that were not valid any more
     float floor_share = 0;  ///< of the drawn pixels, as estimated: those in the cheapest forms of nodes that have finer ones
 };
 
@@ -139,6 +147,10 @@ public:
     void end_workers();
     void prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
                  prepare::PreparedFrame& out, const PrepareHints& hints = {});
+
+    /// What the pictures of the image cache show on the way from a pose to a region: for PrepareHints::covered. Once a frame,
+    /// before select(). Nothing without a cache (gl::DeviceOptions::picture_layers).
+    const model::CoverBits& cover(const Pose& now, const prepare::Region& next);
 
     /// Changes the selector, from the next prepare() on. No prepare() may be running, since `flat` changes its depth. Allocates.
     Result<void> set_selector(std::string_view name);
@@ -179,6 +191,10 @@ public:
     [[nodiscard]] std::span<const gl::DrawItem> drawn() const;
     /// Items of that cut, or their stand-ins, that were outside the pose's view; valid as long.
     [[nodiscard]] std::span<const gl::DrawItem> culled() const;
+    /// Pictures of the image cache in the last submit(), back to front; valid as long.
+    [[nodiscard]] std::span<const gl::CachePicture> pictures() const;
+    /// Adds to drawn() the full detail that these pictures stand for, so that it may be drawn again without them.
+    void draw_pictures_as_forms();
     /// Whether the last submit() fell to the floor without need. Over half of its picture shows floor forms where the cut before
     /// had finer ones. And what of that cut is in view now would have been done within `time_us` from the call, by `correction`.
     /// Takes a microsecond, or up to a millisecond where much of the picture is at the floor: call it after the frame.

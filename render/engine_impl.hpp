@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "render/cache/walk_cache.hpp"
 #include "render/effect_lever.hpp"
 #include "render/engine.hpp"
 #include "render/filter_lever.hpp"
@@ -24,6 +25,13 @@
 #include "rt/base/thread_annotations.hpp"
 
 namespace surefoot {
+
+/// A leaf that a picture was to show. It is drawn in full detail, or where there is no time in its cheapest form.
+struct UncoveredItem {
+    model::Index node = 0, full = 0, coarse = 0;  ///< forms
+    model::ItemCost full_cost, coarse_cost;
+    float pixels = 0, distance_m = 0;
+};
 
 /// The engine itself. prepare() runs on a worker; what GUARDED_BY(draws) marks belongs to the thread that draws.
 struct Engine::Impl {
@@ -71,7 +79,21 @@ struct Engine::Impl {
     bool shadow_due GUARDED_BY(draws) = false;         ///< the planned map was bought
     bool shadow_shown GUARDED_BY(draws) = false;       ///< by the last picture
     bool shadow_unbudgeted GUARDED_BY(draws) = false;  ///< draw_unbudgeted() is to show it
-    static constexpr std::uint32_t shadow_item = 0;    ///< the refresh that it is
+    bool course_known GUARDED_BY(draws) = false;
+    bool pictures_as_forms GUARDED_BY(draws) = false;          ///< drawn has what they show, too
+    model::EffectMask pictures_without GUARDED_BY(draws) = 0;  ///< effects that the pictures were drawn without
+    static constexpr std::uint32_t shadow_item = 0;            ///< the refresh that it is
+    cache::WalkCache pictures GUARDED_BY(draws);               ///< none where the device has no layers
+    std::vector<gl::DrawItem> picture_items;  ///< full detail of what lies in each box, as in SceneBoxes::nodes()
+    std::vector<gl::CachePicture> shown_pictures GUARDED_BY(draws);
+    std::vector<UncoveredItem> uncovered GUARDED_BY(draws);  ///< leaves whose pictures are not valid
+    std::vector<bool> is_uncovered GUARDED_BY(draws);        ///< by node; all false between frames
+    model::CoverBits cover_bits GUARDED_BY(draws);
+    cache::EyeCourse course GUARDED_BY(draws);    ///< of cover()
+    double turn_rad GUARDED_BY(draws) = 0;        ///< of the views after it
+    double pictures_us GUARDED_BY(draws) = 0;     ///< to draw the pictures of the cut's set, as predicted
+    double pictures_value GUARDED_BY(draws) = 0;  ///< of what the drawn pictures show
+    double after_us GUARDED_BY(draws) = 0;        ///< of what comes after the last slice, whatever is drawn before
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
@@ -142,6 +164,17 @@ struct Engine::Impl {
     [[nodiscard]] double beside_us() const REQUIRES(draws) {
         return use_last ? 0.0 : cut.bought.cost_us - (filtered ? static_cast<double>(filter_us) : 0.0) - lever.spent_us;
     }
+    Result<void> make_pictures() REQUIRES(draws);
+    void forget_pictures() REQUIRES(draws);
+    void prepay_pictures(const prepare::PreparedFrame& set) REQUIRES(draws);
+    void offer_pictures(const prepare::PreparedFrame& set, const select::SelectInput& input) REQUIRES(draws);
+    void take_pictures() REQUIRES(draws);
+    void capture_pictures(SubmitReport& report) REQUIRES(draws);
+    void find_uncovered(const Pose& pose) REQUIRES(draws);
+    void begin_pictures(const Pose& pose, SubmitReport& report) REQUIRES(draws);
+    void draw_uncovered(const SubmitLimits& limits, double start_us, model::ItemCost& so_far, SubmitReport& report)
+        REQUIRES(draws);
+    void draw_pictures(SubmitReport& report) REQUIRES(draws);
     [[nodiscard]] ShadowScene shadow_scene() REQUIRES(draws);
     void offer_shadow(const prepare::PreparedFrame& set) REQUIRES(draws);
     void take_shadow() REQUIRES(draws);

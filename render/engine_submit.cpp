@@ -106,7 +106,8 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
         check.elapsed_us = check.predicted_so_far_us;
     check.next_us = with(p.next) * scale;
     check.next_stand_in_us = with(p.stand_in) * scale;
-    check.rest_stand_in_us = (with(p.rest) + static_cast<double>(enlarge_us())) * correction.factor;  // of many: little spread
+    check.rest_stand_in_us =
+        (with(p.rest) + static_cast<double>(enlarge_us()) + after_us) * correction.factor;  // of many: little spread
     check.limit_us = limits.limit_us - limits.margin_us;
     check.deadline_us = limits.deadline_us - limits.margin_us;
     if (limits.now_ns != nullptr && !use_last) {  // times of another clock repeat the predictions
@@ -135,7 +136,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         rest_stand_in += {slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
     }
     bool full = true;
-    float in_flight_us = 0, unfinished_us = before_us(report.shadow_refreshed);
+    float in_flight_us = 0, unfinished_us = before_us(report.shadow_refreshed) + static_cast<float>(report.captures_us);
     if (beside_us() > 0.0) device->charge_us(beside_us());
     const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
     for (const select::Slice& slice : plan.slices) {
@@ -153,6 +154,8 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         ++report.slices;
         if (!full) ++report.downgraded_slices;
     }
+    draw_uncovered(limits, start_us, so_far, report);
+    draw_pictures(report);
     report.one_more_ms = one_more_ms;
     report.dropped_objects = cut.dropped.count;
     report.worst_error_rad = std::max(report.worst_error_rad, cut.dropped.error_rad);
@@ -161,8 +164,10 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         report.worst_node = cut.dropped.node;
     }
     report.predicted = so_far;
-    report.value = prepared->full_value > 0.0F ? report.value / static_cast<double>(prepared->full_value) : 1.0;
-    report.predicted_us = static_cast<double>(combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us()) + beside_us();
+    const double full_value = prepared->full_value + pictures_value;  // what pictures show is shown in full
+    report.value = full_value > 0 ? (report.value + pictures_value) / full_value : 1.0;
+    report.predicted_us = static_cast<double>(combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us()) + beside_us() +
+                          report.pictures_us;
     report.other_us = report.predicted_us - report.full_us * static_cast<double>(prepared->full_factor) -
                       report.coarse_us * static_cast<double>(prepared->coarse_factor);
 }
@@ -234,6 +239,8 @@ bool Engine::Impl::submit_rest(const Pose& pose, const SubmitLimits& limits, Sub
     const bool still = limits.frame_ns >= 0 && watch.at_rest(pose, limits.frame_ns) && !device->lost() && !motion_in_view(pose);
     if (still) {
         report = last_report;
+        report.pictures_made = report.uncovered_items = 0;
+        report.pictures_us = report.captures_us = 0;
         const RestScene scene{model,
                               preparer->item_costs(),
                               costs,
@@ -269,6 +276,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.device->set_filter(e.filtered && !e.use_last ? e.best_filter : e.device->filter());
     if (e.lever.count > 0) e.device->hide_effects(e.hidden | e.lever.left_out);
     e.begin_shadow(pose, report);
+    e.begin_pictures(pose, report);
     e.device->begin_frame(pose, e.drawn_resolution);
     if (e.use_last) {
         e.submit_last(pose, limits, start_us, report);

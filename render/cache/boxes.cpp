@@ -52,8 +52,9 @@ Result<void> check_options(const TreeOptions& options) {
     return {};
 }
 
-/// Adds the children of a box, with the triangles of the box that meet them.
-void add_children(BoxTree& tree, Index of, std::span<const Triangle> triangles, std::uint32_t branching) {
+/// Adds the children of a box, with the contents of the box that meet them.
+template <class Content>
+void add_children(BoxTree& tree, Index of, std::span<const Content> contents, std::uint32_t branching) {
     const CacheBox parent = tree.boxes[of];
     const std::vector<Box> parts = split_box(parent.box, branching);
     tree.boxes[of].first_child = static_cast<Index>(tree.boxes.size());
@@ -65,12 +66,31 @@ void add_children(BoxTree& tree, Index of, std::span<const Triangle> triangles, 
         child.level = parent.level + 1;
         child.first_primitive = static_cast<std::uint32_t>(tree.primitives.size());
         for (std::uint32_t i = 0; i < parent.primitive_count; ++i) {
-            const Index triangle = tree.primitives[parent.first_primitive + i];
-            if (meets(triangles[triangle], part)) tree.primitives.push_back(triangle);
+            const Index content = tree.primitives[parent.first_primitive + i];
+            if (meets(contents[content], part)) tree.primitives.push_back(content);
         }
         child.primitive_count = static_cast<std::uint32_t>(tree.primitives.size()) - child.first_primitive;
         tree.boxes.push_back(child);
     }
+}
+
+/// Splits the root, which holds all contents and their number.
+template <class Content>
+Result<BoxTree> split(const CacheBox& root, std::span<const Content> contents, const TreeOptions& options) {
+    BoxTree tree;
+    for (std::size_t i = 0; i < contents.size(); ++i) tree.primitives.push_back(static_cast<Index>(i));
+    tree.boxes.push_back(root);
+    for (Index i = 0; i < tree.boxes.size(); ++i) {
+        const CacheBox& box = tree.boxes[i];
+        if (box.level + 1 >= options.levels || box.primitive_count < options.min_primitives) continue;
+        add_children(tree, i, contents, options.branching);
+        if (tree.primitives.size() >= none)
+            return Error{"boxes", "The boxes hold more triangles than they can number", "Choose fewer levels",
+                         ErrorKind::out_of_limits};
+    }
+    for (auto box = tree.boxes.rbegin(); box != tree.boxes.rend(); ++box)
+        if (box->parent != none) tree.boxes[box->parent].height = std::max(tree.boxes[box->parent].height, box->height + 1);
+    return tree;
 }
 
 }  // namespace
@@ -82,6 +102,10 @@ std::uint64_t full_box_count(const TreeOptions& options) {
         of_level *= options.branching;
     }
     return all;
+}
+
+bool meets(const Box& a, const Box& b) {
+    return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
 }
 
 bool meets(const Triangle& triangle, const Box& box) {
@@ -113,7 +137,6 @@ Result<BoxTree> make_boxes(std::span<const Triangle> triangles, const TreeOption
     if (triangles.size() >= none)
         return Error{"boxes", "The scene has more triangles than the boxes can number", "Choose a smaller scene",
                      ErrorKind::out_of_limits};
-    BoxTree tree;
     CacheBox root;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         for (const dvec3& corner : triangles[i]) {
@@ -122,21 +145,24 @@ Result<BoxTree> make_boxes(std::span<const Triangle> triangles, const TreeOption
                              ErrorKind::damaged};
             root.box.grow(corner);
         }
-        tree.primitives.push_back(static_cast<Index>(i));
     }
     root.primitive_count = static_cast<std::uint32_t>(triangles.size());
-    tree.boxes.push_back(root);
-    for (Index i = 0; i < tree.boxes.size(); ++i) {
-        const CacheBox& box = tree.boxes[i];
-        if (box.level + 1 >= options.levels || box.primitive_count < options.min_primitives) continue;
-        add_children(tree, i, triangles, options.branching);
-        if (tree.primitives.size() >= none)
-            return Error{"boxes", "The boxes hold more triangles than they can number", "Choose fewer levels",
-                         ErrorKind::out_of_limits};
+    return split(root, triangles, options);
+}
+
+Result<BoxTree> make_boxes_around(std::span<const Box> contents, const TreeOptions& options) {
+    if (auto ok = check_options(options); !ok) return ok.error();
+    if (contents.empty() || contents.size() >= none)
+        return Error{"boxes", fmt::format("A tree cannot hold {} boxes", contents.size()), "Choose a scene that shows something",
+                     ErrorKind::out_of_limits};
+    CacheBox root;
+    for (std::size_t i = 0; i < contents.size(); ++i) {
+        if (contents[i].empty() || !is_finite(contents[i].min) || !is_finite(contents[i].max))
+            return Error{fmt::format("box {}", i), "A side is not a finite number", "Repair the scene", ErrorKind::damaged};
+        root.box.grow(contents[i]);
     }
-    for (auto box = tree.boxes.rbegin(); box != tree.boxes.rend(); ++box)
-        if (box->parent != none) tree.boxes[box->parent].height = std::max(tree.boxes[box->parent].height, box->height + 1);
-    return tree;
+    root.primitive_count = static_cast<std::uint32_t>(contents.size());
+    return split(root, contents, options);
 }
 
 }  // namespace surefoot::cache

@@ -51,6 +51,25 @@ std::uint64_t full_box_count(const TreeOptions& options);
 /// Errors: options out of range, no triangle, a corner that is not finite.
 Result<BoxTree> make_boxes(std::span<const Triangle> triangles, const TreeOptions& options);
 
+/// The same of boxes that hold what the scene shows. A box is in every box of the tree that it meets, faces included.
+Result<BoxTree> make_boxes_around(std::span<const Box> contents, const TreeOptions& options);
+
+/// Calls draw(child) for the children of a box, so that none comes before one that it hides from the eye. Halves lie as they
+/// were split: the upper half of the children is beyond the plane of its first one, and so on.
+template <class Draw>
+void back_to_front(const BoxTree& tree, Index first, std::uint32_t count, const dvec3& eye, const Draw& draw) {
+    if (count == 0) return;
+    if (count == 1) return draw(first);
+    const Index beyond = first + count / 2;
+    const dvec3 &low = tree.boxes[first].box.min, &high = tree.boxes[beyond].box.min;
+    const int axis = high.x > low.x ? 0 : high.y > low.y ? 1 : 2;
+    const bool low_is_farther = eye[axis] >= high[axis];
+    back_to_front(tree, low_is_farther ? first : beyond, count / 2, eye, draw);
+    back_to_front(tree, low_is_farther ? beyond : first, count / 2, eye, draw);
+}
+
+/// Whether two boxes meet, faces included.
+bool meets(const Box& a, const Box& b);
 /// Whether a triangle meets a box, its faces included. Rounding may make it true a hair outside, and never false inside.
 /// Source: Akenine-Moller 2001, Fast 3D Triangle-Box Overlap Testing.
 bool meets(const Triangle& triangle, const Box& box);

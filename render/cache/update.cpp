@@ -95,19 +95,8 @@ private:
             plan_.uses[i] = BoxUse::not_replaceable;
             ++plan_.counts.not_replaceable;
         } else {
-            draw_back_to_front(box.first_child, box.child_count);
+            back_to_front(tree_, box.first_child, box.child_count, view_.eye, [&](Index child) { draw(child); });
         }
-    }
-
-    /// Boxes lie in the order of their splits: the upper half of them beyond the plane of the first one, and so on.
-    void draw_back_to_front(Index first, std::uint32_t count) {
-        if (count == 1) return draw(first);
-        const Index beyond = first + count / 2;
-        const dvec3 &low = tree_.boxes[first].box.min, &high = tree_.boxes[beyond].box.min;
-        const int axis = high.x > low.x ? 0 : high.y > low.y ? 1 : 2;
-        const bool low_is_farther = view_.eye[axis] >= high[axis];
-        draw_back_to_front(low_is_farther ? first : beyond, count / 2);
-        draw_back_to_front(low_is_farther ? beyond : first, count / 2);
     }
 
     /// Refreshes a picture whose error is over max_error. Whether the box then has one with at most that.

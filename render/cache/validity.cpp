@@ -76,6 +76,26 @@ PixelAngles pixel_angles(const Pose& pose, model::Viewport viewport) {
     return {std::atan(corner) - std::atan(corner - pixel), 2 * std::atan(0.5 * pixel), 2 * std::atan(extent.half_y) / rows};
 }
 
+ViewPixels view_pixels(const Pose& pose, model::Viewport viewport, double turn_rad) {
+    const model::PictureExtent extent = model::picture_extent(pose, viewport);
+    const double columns = std::max(viewport.width, 1U), rows = std::max(viewport.height, 1U);
+    return {pose.position, pose.forward(), std::min(2 * extent.half_x / columns, 2 * extent.half_y / rows),
+            std::hypot(extent.half_x + std::abs(extent.middle_x), extent.half_y + std::abs(extent.middle_y)), turn_rad};
+}
+
+// A pixel covers a smaller angle the farther it is from the view direction, and no box is seen beyond the corner.
+double ViewPixels::smallest_rad(const Box& box) const {
+    const dvec3 to = box.centre() - eye;
+    const double distance = glm::length(to), radius = 0.5 * box.diagonal();
+    double tangent = corner;
+    if (distance > radius) {
+        const double from_axis = std::acos(std::clamp(glm::dot(to, forward) / distance, -1.0, 1.0));
+        const double farthest = from_axis + std::asin(radius / distance) + turn_rad;
+        if (farthest < std::atan(corner)) tangent = std::tan(farthest);
+    }
+    return std::atan(tangent) - std::atan(tangent - pixel);
+}
+
 std::optional<Picture> picture_of(const Box& box, const dvec3& eye, PlanePlace place) {
     const dvec3 to_middle = box.centre() - eye;
     const double distance = glm::length(to_middle);
@@ -109,6 +129,20 @@ std::optional<Picture> picture_of(const Box& box, const dvec3& eye, PlanePlace p
 }
 
 PictureErrors picture_errors(const Picture& picture, const dvec3& eye) { return errors_after(picture, move_of(picture, eye)); }
+
+// The parallax grows with an approach, so none is worse than an eye as far ahead and as far aside as any.
+PictureErrors picture_errors(const Picture& picture, const dvec3& eye, double radius_m) {
+    const EyeMove move = move_of(picture, eye);
+    const double ahead = move.approach_m + radius_m, per_m = parallax_per_m(picture, ahead);
+    const double aside = move.sideways_m + radius_m, along = std::abs(move.approach_m) + radius_m;
+    if (!std::isfinite(per_m) || !std::isfinite(aside)) return {infinite, infinite, infinite};
+    return {aside * per_m, picture.tangent * along * per_m, picture.inherited * picture.plane_m / (picture.plane_m - ahead)};
+}
+
+bool valid_around(const Picture& picture, const dvec3& eye, double radius_m, double max_rad) {
+    return picture_errors(picture, eye, radius_m).total() <= max_rad &&
+           texel_after(picture, move_of(picture, eye).approach_m + radius_m) <= max_rad;
+}
 
 double texel_rad(const Picture& picture, const dvec3& eye) { return texel_after(picture, move_of(picture, eye).approach_m); }
 

@@ -19,6 +19,16 @@ struct PixelAngles {
 };
 PixelAngles pixel_angles(const Pose& pose, model::Viewport viewport);
 
+/// The smallest pixels of a view, by where in it something is seen.
+struct ViewPixels {
+    dvec3 eye{0.0}, forward{0, 0, -1};
+    double pixel = 0, corner = 0;  ///< as tangents: a pixel's side; the corner that is farthest from the view direction
+    double turn_rad = 0;           ///< by which the view may turn
+    /// Of all places where a point of the box may be seen, rad.
+    [[nodiscard]] double smallest_rad(const Box& box) const;
+};
+ViewPixels view_pixels(const Pose& pose, model::Viewport viewport, double turn_rad = 0);
+
 /// Where a picture's plane stands, between the nearest and the farthest depth of its box.
 enum class PlanePlace : std::uint8_t { harmonic_mean, middle, near_face, far_face };
 
@@ -48,6 +58,12 @@ struct PictureErrors {
     [[nodiscard]] double total() const { return translation + approach + inherited; }
 };
 PictureErrors picture_errors(const Picture& picture, const dvec3& eye);
+
+/// The same for all eyes within a distance of one: no less than any of theirs.
+PictureErrors picture_errors(const Picture& picture, const dvec3& eye, double radius_m);
+
+/// Whether neither error nor texel is over max_rad, seen from all eyes within a distance of one.
+bool valid_around(const Picture& picture, const dvec3& eye, double radius_m, double max_rad);
 
 /// The largest angle of a texel, seen from an eye, rad. Infinite as above, and without texels.
 double texel_rad(const Picture& picture, const dvec3& eye);

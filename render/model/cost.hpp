@@ -77,7 +77,10 @@ struct CostModel {
     float trilinear_factor = 1.24F;         ///< raster time of textured items, against bilinear
     /// Of the picture as it is drawn, in every frame: with_background() and at_quality() find it. No file holds it.
     float drawn_pass_ns_per_pixel = 0;
-    float rest_pass_ns_per_pixel = 8;      ///< of one pass over the picture at rest; typical, no calibration measures it
+    float rest_pass_ns_per_pixel = 8;  ///< of one pass over the picture at rest; typical, no calibration measures it
+    /// Of the image cache, typical of llvmpipe; no calibration measures it. A picture, by its box's faces: transparent pixels
+    /// cost as much as others. A new one, beside what it shows: a pass, and its texels.
+    float picture_us = 1, picture_ns_per_pixel = 5.6F, capture_us = 20, capture_ns_per_texel = 1;
     float background_ns_per_pixel = 3.7F;  ///< of what is behind everything (background_effects), in models that call for it
     float behind_ns_per_pixel = 0;         ///< the same in this model's pictures: with_background() sets it. No file holds it
     /// Six times the mean squared error (0..1) of full detail that is enlarged. Typical of five scenes; a fit measures its model.

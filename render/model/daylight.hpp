@@ -47,6 +47,7 @@ struct Daylight {
     vec3 background{1.0F};                   ///< factor of the colour behind everything, which is the fog's as well
     vec3 pictures{1.0F};                     ///< factor of what was captured in the light of the bake
     std::uint32_t sun_moment = 0;            ///< the first of two of SunSeen
+    bool operator==(const Daylight&) const = default;
 };
 
 /// Moments of SunSeen's day. They are evenly spread from sunrise to sunset, or over 24 hours where the sun never rises or never

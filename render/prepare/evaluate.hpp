@@ -33,6 +33,8 @@ struct RegionView {
 /// The value, unless it is infinite or no number.
 inline double finite_or(double value, double otherwise) { return std::isfinite(value) ? value : otherwise; }
 
+/// The region with numbers: what is not finite is replaced, a position by the middle of the model's box.
+Region cleaned(const Region& region, const Box& root);
 /// The view of the frame's region. target_factor: on the error from which nodes are opened.
 RegionView region_view(const PreparedFrame& frame, const PrepareOptions& options, float target_factor, double speed_mps,
                        double turn_rps);

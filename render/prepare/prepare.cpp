@@ -43,20 +43,6 @@ constexpr std::uint32_t parents_a_chunk = 64, visits_a_chunk = 512;
 constexpr std::uint32_t max_hidden = 4096;      // of which outlines are kept
 constexpr std::uint32_t min_slots = 1U << 15U;  // children looked at before they are closed up: bounds the room for them
 
-Region cleaned(const Region& region, const Box& root) {
-    Region r = region;
-    const dvec3& p = r.centre.position;
-    if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
-        r.centre.position = root.empty() ? dvec3(0.0) : root.centre();
-    const dquat& q = r.centre.orientation;
-    const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-    r.centre.orientation = std::isfinite(length) && length > 1e-9 ? q / length : dquat(1.0, 0.0, 0.0, 0.0);
-    r.centre.fov_y_rad = finite_or(r.centre.fov_y_rad, Pose{}.fov_y_rad);
-    r.radius_m = std::clamp(finite_or(r.radius_m, 0.0), 0.0, 1e9);
-    r.angle_rad = std::clamp(finite_or(r.angle_rad, 0.0), 0.0, 3.2);
-    return r;
-}
-
 }  // namespace
 
 struct Preparer::Impl {
@@ -73,7 +59,7 @@ struct Preparer::Impl {
     std::vector<NodeVisit> slots;          ///< children of a block of parents, before they are closed up
     std::vector<Index> block;              ///< the block's parents that are opened
     std::vector<HiddenNode> hidden_nodes;  ///< parents are visits, then candidates
-    std::vector<std::uint32_t> slot_first, slot_count, slot_hidden;
+    std::vector<std::uint32_t> slot_first, slot_count, slot_hidden, slot_left_out;
     std::vector<Index> candidate_of;  ///< a visit
     std::vector<std::uint32_t> chunk_choice, chunk_candidate, chunk_count;
     std::vector<std::uint32_t> chunk_parts;        ///< of a block: tests of Occlusion that it may do, then those that it did
@@ -90,6 +76,8 @@ struct Preparer::Impl {
     float used_factor = 1;                      ///< of the last run(), for value_at() too
     float target_factor = 1;                    ///< of the error target, raised while frames look at too many nodes
     std::array<EffectLoss, max_effect_groups> effect_losses;
+    const model::CoverTest* cover = nullptr;    ///< null: nothing is left out
+    const model::CoverBits* covered = nullptr;  ///< of this set
     std::atomic<std::int64_t> worker_cpu_ns{0};
 
     Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o);
@@ -142,6 +130,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     slot_first.resize(slots.size() + 1);
     slot_count.resize(slots.size());
     slot_hidden.resize(slots.size());
+    slot_left_out.resize(slots.size());
     chunk_parts.resize(slots.size() / parents_a_chunk + 1);
     candidate_of.resize(max_nodes);
     const std::size_t chunks = max_nodes / visits_a_chunk + 2;
@@ -203,12 +192,16 @@ void Preparer::Impl::visit_children(const RegionView& view, const model::Frustum
                                     std::uint32_t& parts) {
     const NodeVisit& parent = visits[block[j]];
     const model::Node& node = model.nodes[parent.node];
-    std::uint32_t at = slot_first[j], hidden = 0;
+    std::uint32_t at = slot_first[j], hidden = 0, left_out = 0;
     for (Index child = node.first_child; child < node.first_child + node.child_count; ++child) {
         Box now;
         const Box& box = box_of(child, now);
         const PlaneMask mask = cull_planes(frustum, box, parent.mask);
         if (mask == culled) continue;
+        if (cover != nullptr && cover->covered(child, *covered)) {
+            ++left_out;
+            continue;
+        }
         if (occlusion.hides(box, parts))
             slots[slot_first[j] + node.child_count - ++hidden].node = child;
         else
@@ -216,6 +209,7 @@ void Preparer::Impl::visit_children(const RegionView& view, const model::Frustum
     }
     slot_count[j] = at - slot_first[j];
     slot_hidden[j] = hidden;
+    slot_left_out[j] = left_out;
 }
 
 // Children of the block are appended in order; a parent whose children no longer fit keeps its own choices.
@@ -223,6 +217,7 @@ void Preparer::Impl::close_up_block(const RegionView& view, PreparedFrame& out) 
     for (std::uint32_t j = 0; j < block.size(); ++j) {
         NodeVisit& parent = visits[block[j]];
         out.hidden += slot_hidden[j];
+        out.left_out += slot_left_out[j];
         std::uint32_t reps = 0;
         for (std::uint32_t k = 0; k < slot_count[j]; ++k) reps += slots[slot_first[j] + k].rep_count;
         if (visits.size() + slot_count[j] > candidate_of.size() || choice_bound + reps > options.max_choices) {
@@ -403,6 +398,8 @@ void Preparer::end_workers() { impl_->workers.end(); }
 
 void Preparer::set_effect_losses(const std::array<EffectLoss, max_effect_groups>& losses) { impl_->effect_losses = losses; }
 
+void Preparer::set_cover(const model::CoverTest* test) { impl_->cover = test; }
+
 const model::ItemCosts& Preparer::item_costs() const { return impl_->evaluator.item_costs(); }
 
 void Preparer::reserve(PreparedFrame& frame) const {
@@ -429,7 +426,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     out.full_cost = {};
     out.full_value = 0;
     out.effect_value = {};
-    out.visits = out.hidden = 0;
+    out.visits = out.hidden = out.left_out = 0;
     if (s.model.nodes.empty()) return;
 
     const model::Node& root = s.model.nodes[0];
@@ -450,7 +447,9 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.parts_left = Occlusion::max_parts_a_set;
     out.visits = 1;
     s.choice_bound = root.rep_count;
-    if (mask != culled) s.visits.push_back(s.visit_of(view, 0, none, mask));
+    s.covered = &out.covered;
+    const bool all_covered = s.cover != nullptr && s.cover->covered(0, out.covered);
+    if (mask != culled && !all_covered) s.visits.push_back(s.visit_of(view, 0, none, mask));
     for (Index begin = 0, end = static_cast<Index>(s.visits.size()); begin < end;) {
         s.expand_level(view, frustum, begin, end, out);
         begin = end;

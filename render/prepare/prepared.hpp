@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/model/cost.hpp"
+#include "render/model/covered_boxes.hpp"
 #include "render/model/item_costs.hpp"
 #include "render/model/model.hpp"
 #include "render/model/view.hpp"
@@ -104,6 +105,8 @@ struct PreparedFrame {
     float resolution_value = 0;  ///< weighted pixels: what it shows more than full resolution for the same time
     std::uint32_t visits = 0;    ///< nodes tested, invisible ones included
     std::uint32_t hidden = 0;    ///< of these, nodes in the view that others hide; their subtrees were not tested
+    model::CoverBits covered;    ///< what pictures show: nodes that lie wholly in it are no candidates; set before run()
+    std::uint32_t left_out = 0;  ///< nodes in the view that lie there; their subtrees were not tested
     bool truncated = false;      ///< capacity reached: deeper detail is missing, but the tree is complete and legal
     double acuity_rad = 0;       ///< PrepareOptions::acuity_rad
     float target_error_rad = 0;  ///< nodes with a smaller error were not opened, and finer choices not offered
@@ -170,6 +173,9 @@ public:
 
     /// Of the next run(): fills effect_value by these. At first there are none. What the spans hold must outlive the run.
     void set_effect_losses(const std::array<EffectLoss, max_effect_groups>& losses);
+
+    /// Of the next runs: leaves out what PreparedFrame::covered covers. Null, as at first: nothing. It must outlive the preparer.
+    void set_cover(const model::CoverTest* test);
 
     /// Predicts the costs of the choices.
     [[nodiscard]] const model::ItemCosts& item_costs() const;

@@ -6,6 +6,20 @@
 
 namespace surefoot::prepare {
 
+Region cleaned(const Region& region, const Box& root) {
+    Region r = region;
+    const dvec3& p = r.centre.position;
+    if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
+        r.centre.position = root.empty() ? dvec3(0.0) : root.centre();
+    const dquat& q = r.centre.orientation;
+    const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    r.centre.orientation = std::isfinite(length) && length > 1e-9 ? q / length : dquat(1.0, 0.0, 0.0, 0.0);
+    r.centre.fov_y_rad = finite_or(r.centre.fov_y_rad, Pose{}.fov_y_rad);
+    r.radius_m = std::clamp(finite_or(r.radius_m, 0.0), 0.0, 1e9);
+    r.angle_rad = std::clamp(finite_or(r.angle_rad, 0.0), 0.0, 3.2);
+    return r;
+}
+
 RegionView region_view(const PreparedFrame& frame, const PrepareOptions& options, float target_factor, double speed_mps,
                        double turn_rps) {
     const Region& region = frame.region;

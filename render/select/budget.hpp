@@ -33,7 +33,7 @@ public:
         // 1 + items / slice_us is never less than the number of slices that plan_slices makes.
         const double slice_end_us = static_cast<double>(costs.combine.submit_weight) * static_cast<double>(costs.slice_us);
         const float enlarge_us = costs.enlarge_us(input.prepared->resolution, input.prepared->viewport);
-        fixed_us_ = static_cast<double>(combine_.fixed_us) + slice_end_us + static_cast<double>(enlarge_us);
+        fixed_us_ = static_cast<double>(combine_.fixed_us) + slice_end_us + static_cast<double>(enlarge_us) + input.beside_us;
         per_item_us_ = 1.0 + (input.slice_us > 0.0 ? slice_end_us / input.slice_us : 0.0);
         budget_us_ = input.budget_us > 0.0 ? input.budget_us : 0.0;  // NaN too: then the floor is drawn
     }

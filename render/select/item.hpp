@@ -20,9 +20,9 @@
 namespace surefoot::select {
 
 /// What an item spends its time on.
-enum class ItemKind : std::uint8_t { resolution, filter, order, samples, upload, refresh, effect };
-constexpr std::array<std::string_view, 7> item_kind_names{"resolution", "filter",  "order", "samples",
-                                                          "upload",     "refresh", "effect"};
+enum class ItemKind : std::uint8_t { resolution, filter, order, samples, upload, refresh, effect, pictures };
+constexpr std::array<std::string_view, 8> item_kind_names{"resolution", "filter",  "order",  "samples",
+                                                          "upload",     "refresh", "effect", "pictures"};
 
 /// Steps of one lever: each needs the one before it, and is priced as the difference to it. The items of the other kinds are
 /// independent of each other.

@@ -73,6 +73,7 @@ struct SelectInput {
     double max_error_rad = 0;         ///< bought first: no error times importance is more, if the budget allows; 0: none
     BenefitModel benefit = BenefitModel::surefoot;  ///< of the 1994 searches; others go by their own
     double last_frame_us = 0;                       ///< how long the last frame took; 0: unknown. For `reactive`
+    double beside_us = 0;                           ///< spent already beside the forms: pictures of the image cache
 };
 
 inline double headroom_of(const SelectInput& input) {

@@ -97,7 +97,11 @@ struct FrameRecord {
     bool by_core_steal = false;  ///< a miss that the clocks alone would call own, and `stolen` by core_steal_ns
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
     ShownBy shown_by = ShownBy::nothing;
-    bool at_rest = false;  ///< no cut was drawn: the shown picture stays, or full detail replaces it
+    bool at_rest = false;                           ///< no cut was drawn: the shown picture stays, or full detail replaces it
+    std::uint32_t pictures = 0, pictures_made = 0;  ///< of the image cache: in the frame's picture; bought by it
+    std::uint32_t uncovered_items = 0;              ///< drawn in place of pictures that were not valid any more
+    float pictures_us = 0, captures_us = 0;         ///< predicted: to draw the pictures, and to make those that were bought
+    std::uint64_t picture_bytes = 0;                ///< of all pictures that are held
     bool shadow_refreshed = false, shadow_shown = false;    ///< the shadow map of what moves: bought by the frame; in its picture
     ShownLight light;                                       ///< of the walk's frames
     std::array<DroppedPart, switch_count> dropped_parts{};  ///< of the light, by light_switches; where frames buy them

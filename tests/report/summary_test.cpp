@@ -203,6 +203,7 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                                    "filter",
                                    "trilinear_frames",
                                    "shadow_map",
+                                   "pictures",
                                    "shown_by",
                                    "shown_missing",
                                    "shown_interval_ms",

@@ -176,6 +176,9 @@ void add_light(CLI::App* c, const std::shared_ptr<SettingArguments>& a) {
         "--buy-effects", a->buy_effects,
         "Leave parts of the light out of frames in which forms show more for their time. A part stays away for 3 s at 30 Hz "
         "or longer");
+    c->add_flag(
+        "--cache", a->cache,
+        "Draw what is far as pictures that are made while walking, each right to a pixel. New ones are bought where they pay");
 }
 
 /// What real time must have, and what is switched off or measured for comparison.

@@ -86,6 +86,7 @@ Result<config::Configuration> read_settings(const SettingArguments& a) {
     if (a.no_occlusion) c.values.occlusion = false;
     if (a.no_motion) c.values.motion = false;
     if (a.buy_effects) c.values.buy_effects = true;
+    if (a.cache) c.values.cache = true;
     for (std::size_t i = 0; i < rt::switch_count; ++i)
         if (a.no_light[i]) c.values.*rt::light_switches[i].on = false;
     return c;

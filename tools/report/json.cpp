@@ -185,6 +185,15 @@ Json seat_of(const SeatSummary& s) {
             {"fov_y_deg", rounded(s.fov_y_deg)}};
 }
 
+Json of_pictures(const PicturesSummary& p) {
+    return {{"drawn_mean", rounded(p.drawn_mean)},
+            {"made", p.made},
+            {"max_bytes", p.max_bytes},
+            {"draw_us", rounded(p.draw_us_mean)},
+            {"make_us", {{"mean", rounded(p.make_us_mean)}, {"max", rounded(p.make_us_max)}}},
+            {"uncovered_items", p.uncovered}};
+}
+
 }  // namespace
 
 std::string to_json(const WalkSummary& s) {
@@ -216,6 +225,7 @@ std::string to_json(const WalkSummary& s) {
         {"filter", rt::name_of(s.filter)},
         {"trilinear_frames", s.trilinear_frames},
         {"shadow_map", {{"refreshes", s.shadow_refreshes}, {"shown_frames", s.shadow_frames}}},
+        {"pictures", of_pictures(s.pictures)},
         {"rest",
          {{"frames", s.rest_frames},
           {"full_detail_frames", s.rested_frames},

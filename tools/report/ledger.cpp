@@ -38,7 +38,7 @@ void put_dropped(fmt::memory_buffer& row, const FrameRecord& f, bool fell) {
 }
 
 // clang-format off
-constexpr std::array<Column, 92> columns = {{
+constexpr std::array<Column, 98> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -122,6 +122,12 @@ constexpr std::array<Column, 92> columns = {{
     {"fell_at", [](auto& r, auto& f) { put_dropped(r, f, true); }},
     {"shadow_refreshed", [](auto& r, auto& f) { add(r, "{:d}", f.shadow_refreshed); }},
     {"shadow_shown", [](auto& r, auto& f) { add(r, "{:d}", f.shadow_shown); }},
+    {"pictures", [](auto& r, auto& f) { add(r, "{}", f.pictures); }},
+    {"pictures_made", [](auto& r, auto& f) { add(r, "{}", f.pictures_made); }},
+    {"pictures_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.pictures_us); }},
+    {"captures_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.captures_us); }},
+    {"picture_bytes", [](auto& r, auto& f) { add(r, "{}", f.picture_bytes); }},
+    {"uncovered_items", [](auto& r, auto& f) { add(r, "{}", f.uncovered_items); }},
     {"snapped", [](auto& r, auto& f) { add(r, "{:d}", f.snapped); }},
     {"cost_scale", [](auto& r, auto& f) { add(r, "{:.4f}", f.cost_scale); }},
     {"x", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[0]); }},

@@ -150,6 +150,16 @@ struct DroppedSummary {
     double first_value_per_us = 0;  ///< in that frame; weighted pixels
 };
 
+/// What the image cache did in a walk. Times are predictions.
+struct PicturesSummary {
+    double drawn_mean = 0;                      ///< in a frame's picture
+    std::uint64_t made = 0;                     ///< bought
+    std::uint64_t max_bytes = 0;                ///< of the pictures that were held
+    double draw_us_mean = 0, make_us_mean = 0;  ///< of a frame
+    double make_us_max = 0;
+    std::uint64_t uncovered = 0;  ///< items that were drawn in place of pictures that were not valid any more
+};
+
 /// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
@@ -179,6 +189,7 @@ struct WalkSummary {
     rt::TextureFilter filter = rt::TextureFilter::bilinear;  ///< as the last frame was drawn
     std::uint64_t trilinear_frames = 0;
     std::uint64_t shadow_refreshes = 0, shadow_frames = 0;  ///< of the shadow map of what moves: bought; pictures that show it
+    PicturesSummary pictures;                               ///< of the image cache
     std::uint64_t coarse_frames = 0;                        ///< with a slice that the in-frame check drew coarser
     std::uint64_t floor_frames = 0;  ///< over half of the picture fell to floor forms, although the cut before would have fitted
     /// Time between the end of drawing and the deadline, of frames below full resolution or whose value is below 0.99 or not

@@ -128,6 +128,21 @@ void shadow_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) 
     s.shadow_frames = count(&FrameRecord::shadow_shown);
 }
 
+void picture_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
+    s.pictures = {};
+    for (const FrameRecord* f : frames) {
+        s.pictures.drawn_mean += f->pictures;
+        s.pictures.made += f->pictures_made;
+        s.pictures.max_bytes = std::max(s.pictures.max_bytes, f->picture_bytes);
+        s.pictures.draw_us_mean += static_cast<double>(f->pictures_us);
+        s.pictures.make_us_mean += static_cast<double>(f->captures_us);
+        s.pictures.make_us_max = std::max(s.pictures.make_us_max, static_cast<double>(f->captures_us));
+        s.pictures.uncovered += f->uncovered_items;
+    }
+    const double count = static_cast<double>(std::max<std::size_t>(frames.size(), 1));
+    for (double* mean : {&s.pictures.drawn_mean, &s.pictures.draw_us_mean, &s.pictures.make_us_mean}) *mean /= count;
+}
+
 void rest_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
     s.rest_frames = s.rested_frames = s.rest_samples = 0;
     s.rest_ms = 0;
@@ -241,6 +256,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     unused_time(frames, summary);
     resolution_figures(frames, summary);
     quality_figures(frames, summary);
+    picture_figures(frames, summary);
     shadow_figures(frames, summary);
     rest_figures(frames, summary);
     summary.dropped_parts = dropped_parts(frames);

@@ -9,6 +9,11 @@
 
 namespace surefoot::walk {
 
+prepare::Region region_after(const PoseSample& sample, double period_s) {
+    if (sample.predicted.known) return sample.predicted.region;
+    return predict_region(sample.before, sample.pose, std::max(sample.dt_s, 1e-3), horizon_s(period_s));
+}
+
 void prepare_after(Engine& engine, const PoseSample& sample, double period_s, RegionClip* clip, prepare::PreparedFrame& out) {
     if (PredictedRegion f = sample.predicted; f.known) {
         if (clip != nullptr) clip->clip(f);
@@ -16,7 +21,7 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, Re
         return;
     }
     const double dt_s = std::max(sample.dt_s, 1e-3);
-    const prepare::Region region = predict_region(sample.before, sample.pose, dt_s, horizon_s(period_s));
+    const prepare::Region region = region_after(sample, period_s);
     const double speed_mps = glm::length(sample.pose.position - sample.before.position) / dt_s;
     const double w = std::min(1.0, std::abs(glm::dot(sample.pose.orientation, sample.before.orientation)));
     engine.prepare(region, sample.frame, speed_mps, 2.0 * std::acos(w) / dt_s, out, sample.hints);

@@ -51,6 +51,9 @@ constexpr double span_s(double period_s) { return horizon_s(period_s) + 2 * peri
 
 class RegionClip;
 
+/// Where the eye is expected in the frames after `sample`: of its input, or by its last two poses.
+prepare::Region region_after(const PoseSample& sample, double period_s);
+
 /// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation. `clip`:
 /// null where nobody walks.
 void prepare_after(Engine& engine, const PoseSample& sample, double period_s, RegionClip* clip, prepare::PreparedFrame& out);

@@ -32,6 +32,10 @@ SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std
     }
 }
 
+bool SnapshotStore::keeps(std::uint64_t frame) const {
+    return every_ > 0 && used_ < snapshots_.size() && (frame % every_ == 0 || (with_last_ && (frame + 1) % every_ == 0));
+}
+
 void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
                              rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
                              std::span<const gl::DrawItem> culled, const rt::ShownLight& light, const rt::Switches& parts,

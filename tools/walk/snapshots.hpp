@@ -45,6 +45,8 @@ public:
                   rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
                   std::span<const gl::DrawItem> culled = {}, const rt::ShownLight& light = {}, const rt::Switches& parts = {},
                   bool shadow = false);
+    /// Whether remember() of this frame will keep what is drawn.
+    [[nodiscard]] bool keeps(std::uint64_t frame) const;
     [[nodiscard]] const std::vector<FrameSnapshot>& snapshots() const { return snapshots_; }
     [[nodiscard]] std::size_t used() const { return used_; }
 

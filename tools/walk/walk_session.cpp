@@ -103,6 +103,9 @@ void follow_display(Session& s) {
         fmt::format("screen: {}. Pictures are shown up to a refresh late. {}.", per_slot.error().what, per_slot.error().remedy));
 }
 
+/// Of the image cache, 256 KiB each.
+constexpr std::uint32_t cache_layers = 128;
+
 /// `others`: cores beside the frame thread's. `called_for`: the model's effects.
 Result<EngineOptions> engine_options(const WalkRequest& r, int others, model::EffectMask called_for) {
     const auto backend = gl::backend_named(r.backend);
@@ -120,6 +123,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others, model::Ef
     const bool may_switch = !r.input_file.empty() || (r.may_steer && r.backend == window_input);
     options.device.switches = switch_groups(r, may_switch || r.buy_effects, called_for);
     options.buys_effects = r.buy_effects;
+    options.device.picture_layers = r.cache ? cache_layers : 0;
     options.motion = r.motion;
     options.effect_hours = effect_hours(r);
     options.device.null.cost_scale = r.cost_scale;
@@ -149,6 +153,13 @@ void add_resolution_message(Session& s) {
     if (s.request.resolution_pct > 0 && s.request.resolution_pct < min_pct)
         s.notes.push_back(
             fmt::format("resolution: {:g} % is below the least. {:g} % is drawn.", s.request.resolution_pct, min_pct));
+}
+
+/// Says where the driver holds no pictures of the image cache.
+void add_cache_message(Session& s) {
+    const gl::Device& device = s.engine->device();
+    if (s.request.cache && device.picture_layers() == 0)
+        s.notes.push_back("cache: The driver cannot hold pictures, so that all is drawn as forms. " + device.picture_reason());
 }
 
 /// Says where the driver draws another number of samples.
@@ -228,6 +239,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
         }
     }
     add_resolution_message(s);
+    add_cache_message(s);
     add_samples_message(s);
     add_rest_message(s);
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));

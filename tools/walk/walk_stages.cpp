@@ -212,6 +212,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.hints = hints();
     now_.valid = true;
     take(newest, record);
+    now_.hints.covered = engine_.cover(now_.pose, region_after(now_, period_s));
     poses_.back() = now_;
     poses_.publish();
 }
@@ -402,6 +403,12 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.bought_us = static_cast<float>(report_.bought_us);
     record.shadow_refreshed = report_.shadow_refreshed;
     record.shadow_shown = report_.shadow_shown;
+    record.pictures = report_.pictures;
+    record.pictures_made = report_.pictures_made;
+    record.pictures_us = static_cast<float>(report_.pictures_us);
+    record.captures_us = static_cast<float>(report_.captures_us);
+    record.picture_bytes = report_.picture_bytes;
+    record.uncovered_items = report_.uncovered_items;
     record.accuracy = accuracy_of(report_.worst_error_rad);
     record.guaranteed_accuracy = static_cast<float>(report_.promised_rad > 0 ? 1 / report_.promised_rad : 0);
     record.reached_accuracy = accuracy_of(report_.worst_weighted_rad);
@@ -424,6 +431,7 @@ void WalkStages::account(rt::FrameRecord& record) {
         follows && !report_.at_rest && engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
     if (report_.rest_samples > 0) record.dropped_parts = {};  // full detail has all of them
     keep(record);
+    if (snapshots_.keeps(record.frame)) engine_.draw_pictures_as_forms();
     snapshots_.remember(record.frame, walk_time_s(), now_.pose, record.accuracy, record.resolution, record.filter,
                         record.triangles, engine_.drawn(), engine_.culled(), record.light,
                         rt::parts_left(record.light.on, record.dropped_parts), record.shadow_shown);

@@ -1,0 +1,314 @@
+// A frame of a walk's cache: what is covered, what pays, what is drawn.
+#include "render/cache/walk_cache.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace surefoot::cache {
+
+namespace {
+
+constexpr float min_saving_us = 5;   // less is not worth a picture
+constexpr float new_share = 0.5F;    // of a cost that was measured anew
+constexpr float share_alone = 0.5F;  // of what lies across several boxes, for each by itself
+
+float us_of(const model::FrameCombine& combine, const model::ItemCost& cost) {
+    return combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us;
+}
+
+/// Solid angle of a box's faces that an eye sees; 0 from inside.
+double faces_sr(const Box& box, const dvec3& eye) {
+    double sum = 0;
+    const dvec3 side = box.max - box.min;
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool below = eye[axis] < box.min[axis];
+        if (!below && !(eye[axis] > box.max[axis])) continue;
+        dvec3 middle = box.centre();
+        middle[axis] = below ? box.min[axis] : box.max[axis];
+        const dvec3 to = middle - eye;
+        const double distance = glm::length(to), area = side[(axis + 1) % 3] * side[(axis + 2) % 3];
+        sum += area * std::abs(to[axis]) / (distance * distance * distance);
+    }
+    return sum;
+}
+
+}  // namespace
+
+WalkCache::WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vector<Box> blended)
+    : boxes_(std::move(boxes)), options_(options), slots_(options.layers), blended_(std::move(blended)) {
+    if (options.layers == 0) return;
+    cones_.resize(blended_.size());
+    const std::size_t count = boxes_.size();
+    held_.resize(count);
+    last_covered_.resize(count, 0);
+    cost_us_.resize(count, 0);
+    saving_us_.resize(count, 0);
+    across_us_.resize(count, 0);
+    shown_value_.resize(count, 0);
+    value_.resize(count, 0);
+    facts_.resize(count);
+    own_us_.resize(count, 0);
+    best_us_.resize(count, 0);
+    candidates_.reserve(count);
+    offers_.reserve(options.max_offers);
+    pending_.reserve(count);
+    relies_.resize(count, false);
+    draws_.boxes.reserve(count);
+    draws_.unserved.reserve(count);
+}
+
+void WalkCache::forget() {
+    for (HeldPicture& held : held_) {
+        slots_.give(held.slot);
+        held = {};
+    }
+    pending_.clear();
+}
+
+void WalkCache::drop(Index box) {
+    slots_.give(held_[box].slot);
+    held_[box] = {};
+    pending_.erase(std::remove(pending_.begin(), pending_.end(), box), pending_.end());
+}
+
+WalkCache::Cone WalkCache::cone_of(const Box& box, const dvec3& eye) {
+    const dvec3 to = box.centre() - eye;
+    const double distance = glm::length(to), radius = 0.5 * box.diagonal();
+    if (!(distance > radius)) return {{}, -1, 0, distance + radius};
+    const double sin = radius / distance;
+    return {to / distance, std::sqrt(1 - sin * sin), sin, distance + radius};
+}
+
+void WalkCache::look_from(const dvec3& eye) {
+    for (std::size_t i = 0; i < blended_.size(); ++i) cones_[i] = cone_of(blended_[i], eye);
+    cones_eye_ = eye;
+}
+
+/// Whether something blended may be seen through the box, from the eye of look_from().
+bool WalkCache::before_blended(const Box& box) const {
+    if (cones_.empty()) return false;
+    const Cone of_box = cone_of(box, cones_eye_);
+    const double near_m = of_box.far_m - box.diagonal();
+    return std::any_of(cones_.begin(), cones_.end(), [&](const Cone& cone) {
+        if (cone.far_m <= near_m) return false;
+        return !(glm::dot(cone.direction, of_box.direction) < cone.cos * of_box.cos - cone.sin * of_box.sin) || cone.cos < 0;
+    });
+}
+
+const model::CoverBits& WalkCache::cover(const ViewPixels& pixels, double radius_m) {
+    ++frame_;
+    look_from(pixels.eye);
+    covered_.reset();
+    bool any_valid = false;
+    for (Index i = 0; i < held_.size(); ++i) {
+        if (!held_[i].any() || std::find(pending_.begin(), pending_.end(), i) != pending_.end()) continue;
+        if (!valid_around(held_[i].picture, pixels.eye, radius_m, pixels.smallest_rad(held_[i].box))) continue;
+        if (before_blended(held_[i].box)) continue;
+        covered_.set(i);
+        last_covered_[i] = frame_;
+        any_valid = true;
+    }
+    if (!any_valid) return covered_;  // nothing lies wholly in boxes without contents
+    covered_ |= boxes_.empty();
+    boxes_.complete(covered_);
+    return covered_;
+}
+
+void WalkCache::begin_costs(const model::CoverBits& covered) {
+    set_ = covered;
+    std::fill(cost_us_.begin(), cost_us_.end(), 0.0F);
+    std::fill(shown_value_.begin(), shown_value_.end(), 0.0F);
+}
+
+/// What meets one box that is not covered goes with a picture of it. What lies across several goes with all of them: half of it
+/// counts for each by itself, so that a first one is made, and half for the box that holds them all.
+void WalkCache::add_cost(model::Index node, float us, float value) {
+    const std::span<const Index> met = boxes_.boxes_of(node);
+    const auto open = static_cast<float>(std::count_if(met.begin(), met.end(), [&](Index box) { return !set_[box]; }));
+    const float share = open > 1 ? share_alone : 1.0F;
+    Index all = none;
+    for (const Index box : met) {
+        if (set_[box]) continue;
+        cost_us_[box] += share * us / open;
+        shown_value_[box] += value / open;
+        all = all == none ? box : common_box(all, box);
+    }
+    if (open > 1) cost_us_[all] += (1 - share) * us;
+}
+
+/// The smallest box that holds both.
+Index WalkCache::common_box(Index a, Index b) const {
+    const std::vector<CacheBox>& boxes = boxes_.tree().boxes;
+    while (a != b) {
+        if (boxes[a].level < boxes[b].level) std::swap(a, b);
+        a = boxes[a].parent;
+    }
+    return a;
+}
+
+void WalkCache::end_costs() {
+    for (Index i = boxes_.size(); i-- > 0;) {
+        const CacheBox& box = boxes_.tree().boxes[i];
+        float& own_us = across_us_[i];
+        if (!set_[i]) own_us += (own_us > 0.0F ? new_share : 1.0F) * (cost_us_[i] - own_us);
+        saving_us_[i] = own_us;
+        if (box.child_count == 0 && !set_[i]) value_[i] = shown_value_[i];
+        if (box.child_count > 0) value_[i] = 0;
+        for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) {
+            saving_us_[i] += saving_us_[child];
+            value_[i] += value_[child];
+        }
+    }
+}
+
+float WalkCache::draw_us(Index box, const dvec3& eye, double pixel_rad, double view_px) const {
+    const double pixels = std::min(view_px, faces_sr(boxes_.filled(box), eye) / (pixel_rad * pixel_rad));
+    return options_.picture_us + 1e-3F * options_.picture_ns_per_pixel * static_cast<float>(pixels);
+}
+
+/// A new picture of the box, where it pays. False: it does not.
+bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) const {
+    const float saves_us = saving_us_[box] - draw_us(box, view.course.eye, view.pixel_rad, view.view_px);
+    if (!(saves_us > min_saving_us)) return false;
+    if (before_blended(boxes_.filled(box))) return false;
+    const auto prospect = prospect_of(boxes_.filled(box), view.course, view.pixels.smallest_rad(boxes_.filled(box)));
+    if (!prospect) return false;
+    offer.box = box;
+    offer.prospect = *prospect;
+    const double texels = prospect->picture.texels, per_m = texels / prospect->picture.side_m;
+    offer.price_us = us_of(view.combine, boxes_.capture_cost(box, per_m)) + options_.capture_us +
+                     1e-3F * options_.capture_ns_per_texel * static_cast<float>(texels * texels);
+    offer.gain_us = saves_us * static_cast<float>(prospect->life_frames);
+    return offer.gain_us >= static_cast<float>(options_.pays) * offer.price_us;
+}
+
+/// A few boxes a frame, in turns.
+void WalkCache::refresh_facts(const PlanView& view) {
+    std::uint32_t left = options_.prospects;
+    for (Index tested = 0; tested < boxes_.size() && left > 0; ++tested) {
+        const Index i = next_fact_;
+        next_fact_ = i + 1 < boxes_.size() ? i + 1 : 0;
+        facts_[i] = {};
+        if (!boxes_.may_have_picture(i) || !(saving_us_[i] > min_saving_us)) continue;
+        if (!model::visible(*view.frustum, boxes_.filled(i))) continue;
+        --left;
+        CacheOffer offer;
+        if (!work_out(i, view, offer)) continue;
+        facts_[i].net_us = (offer.gain_us - offer.price_us) / static_cast<float>(std::max(1.0, offer.prospect.life_frames));
+    }
+}
+
+/// Whether its picture serves now and for a while.
+bool WalkCache::serves_on(Index box, const PlanView& view) const {
+    const HeldPicture& held = held_[box];
+    if (!held.any() || before_blended(held.box)) return false;
+    const EyeCourse& course = view.course;
+    const double max_rad = view.pixels.smallest_rad(held.box);
+    return valid_around(held.picture, course.eye, course.radius_m, max_rad) &&
+           valid_around(held.picture, course.eye + course.step_m * options_.renewed_frames, course.radius_m, max_rad);
+}
+
+/// Of a picture that serves for a while: all that it saves, since it is paid for. Else what a new one would bring.
+float WalkCache::own_net_us(Index box, const PlanView& view) const {
+    if (!(facts_[box].net_us > 0.0F) && !held_[box].any()) return 0;
+    if (!model::visible(*view.frustum, boxes_.filled(box))) return 0;
+    if (!serves_on(box, view)) return facts_[box].net_us;
+    return std::max(facts_[box].net_us, saving_us_[box] - draw_us(box, view.course.eye, view.pixel_rad, view.view_px));
+}
+
+void WalkCache::choose(Index i, const PlanView& view) {
+    const CacheBox& box = boxes_.tree().boxes[i];
+    if (!(best_us_[i] > 0.0F)) return;
+    if (own_us_[i] < best_us_[i]) {
+        for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) choose(child, view);
+        return;
+    }
+    if (!serves_on(i, view)) candidates_.push_back({i, own_us_[i]});
+}
+
+std::span<const CacheOffer> WalkCache::plan(const PlanView& view) {
+    offers_.clear();
+    candidates_.clear();
+    if (!any() || view.frustum == nullptr) return offers_;
+    look_from(view.course.eye);
+    refresh_facts(view);
+    for (Index i = boxes_.size(); i-- > 0;) {
+        const CacheBox& box = boxes_.tree().boxes[i];
+        own_us_[i] = own_net_us(i, view);
+        float below = 0;
+        for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) below += best_us_[child];
+        best_us_[i] = std::max(own_us_[i], below);
+    }
+    choose(0, view);
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.net_us != b.net_us ? a.net_us > b.net_us : a.box < b.box; });
+    for (const Candidate& candidate : candidates_) {
+        if (offers_.size() == options_.max_offers) break;
+        CacheOffer offer;
+        if (work_out(candidate.box, view, offer)) offers_.push_back(offer);
+    }
+    return offers_;
+}
+
+/// The longest unused go first, of those that no set relies on.
+bool WalkCache::make_room(std::uint32_t texels, Slot& slot) {
+    while (true) {
+        if (const auto taken = slots_.take(texels)) {
+            slot = *taken;
+            return true;
+        }
+        Index oldest = none;
+        for (Index i = 0; i < held_.size(); ++i) {
+            if (!held_[i].any() || last_covered_[i] + options_.kept_frames >= frame_) continue;
+            if (oldest == none || last_covered_[i] < last_covered_[oldest]) oldest = i;
+        }
+        if (oldest == none) return false;
+        drop(oldest);
+    }
+}
+
+bool WalkCache::take(const CacheOffer& offer) {
+    Slot slot;
+    if (!any() || pending_.size() == pending_.capacity() || !make_room(offer.prospect.picture.texels, slot)) return false;
+    drop(offer.box);
+    held_[offer.box] = {offer.prospect.picture, offer.prospect.box, slot};
+    last_covered_[offer.box] = frame_;  // so that it is not dropped before a set may use it
+    pending_.push_back(offer.box);
+    return true;
+}
+
+const CacheDraws& WalkCache::draws(const model::CoverBits& set, const ViewPixels& pixels, const model::Frustum& frustum) {
+    draws_.boxes.clear();
+    draws_.unserved.clear();
+    draws_.worst_error_rad = draws_.value = 0;
+    if (!any()) return draws_;
+    look_from(pixels.eye);
+    for (Index i = boxes_.size(); i-- > 0;) {
+        const CacheBox& box = boxes_.tree().boxes[i];
+        bool needed = box.child_count == 0 && set[i] && boxes_.has_contents(i);
+        for (Index child = box.first_child; !needed && child < box.first_child + box.child_count; ++child)
+            needed = relies_[child];
+        relies_[i] = needed;
+    }
+    draw_below(0, pixels, frustum);
+    return draws_;
+}
+
+void WalkCache::draw_below(Index i, const ViewPixels& pixels, const model::Frustum& frustum) {
+    const CacheBox& box = boxes_.tree().boxes[i];
+    if (!relies_[i] || !model::visible(frustum, boxes_.filled(i))) return;
+    const HeldPicture& held = held_[i];
+    if (held.any() && valid_around(held.picture, pixels.eye, 0, pixels.smallest_rad(held.box)) && !before_blended(held.box)) {
+        draws_.boxes.push_back(i);
+        draws_.value += static_cast<double>(value_[i]);
+        draws_.worst_error_rad = std::max(draws_.worst_error_rad, picture_errors(held.picture, pixels.eye).total());
+    } else if (box.child_count == 0) {
+        draws_.unserved.push_back(i);
+    } else {
+        back_to_front(boxes_.tree(), box.first_child, box.child_count, pixels.eye,
+                      [&](Index child) { draw_below(child, pixels, frustum); });
+    }
+}
+
+}  // namespace surefoot::cache

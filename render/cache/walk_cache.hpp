@@ -1,0 +1,161 @@
+// The pictures of a walk: which boxes have one, what they cover, which new ones pay, and where they lie.
+// Belongs to the frame thread. After it is made nothing allocates. It reads poses and costs, and no clock and no graphics API.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/cache/prospect.hpp"
+#include "render/cache/scene_boxes.hpp"
+#include "render/cache/slots.hpp"
+#include "render/model/covered_boxes.hpp"
+#include "render/model/view.hpp"
+
+namespace surefoot::cache {
+
+/// How a walk's cache works.
+struct WalkCacheOptions {
+    std::uint32_t layers = 0;           ///< of 256 x 256 texels; 0: no pictures
+    double pays = 1.2;                  ///< a picture must save so many times its price while it lives
+    std::uint32_t max_offers = 8;       ///< in a frame
+    std::uint32_t prospects = 48;       ///< worked out in a frame, beside those of offers
+    std::uint32_t kept_frames = 16;     ///< a picture that a set may rely on is not dropped
+    double renewed_frames = 5;          ///< before a picture fails, a new one is offered
+    float picture_us = 1;               ///< to draw a picture, beside its pixels
+    float picture_ns_per_pixel = 5.6F;  ///< of the box's faces
+    float capture_us = 20;              ///< to make a picture, beside what it shows
+    float capture_ns_per_texel = 1.0F;  ///< the same, by its texels: to clear it
+};
+
+/// A box's picture.
+struct HeldPicture {
+    Picture picture;  ///< Picture::texels 0: it has none
+    Box box;          ///< grown, as it was captured
+    Slot slot;
+    [[nodiscard]] bool any() const { return slot.texels > 0; }
+};
+
+/// A picture that may be made.
+struct CacheOffer {
+    Index box = 0;
+    Prospect prospect;
+    float price_us = 0;  ///< to make it
+    float gain_us = 0;   ///< what it saves while it lives, without its price
+};
+
+/// What a plan depends on, besides the cache.
+struct PlanView {
+    EyeCourse course;
+    ViewPixels pixels;
+    const model::Frustum* frustum = nullptr;  ///< of all eyes that the plan is for
+    double pixel_rad = 1e-3;                  ///< in the middle of the view
+    double view_px = 0;                       ///< of the whole view
+    model::FrameCombine combine;
+};
+
+/// What a frame shows of a covered scene.
+struct CacheDraws {
+    std::vector<Index> boxes;     ///< their pictures, back to front
+    std::vector<Index> unserved;  ///< covered leaves of the tree whose pictures are not valid: their nodes must be drawn
+    double worst_error_rad = 0;   ///< of the pictures
+    double value = 0;             ///< what their contents showed when they were drawn last
+};
+
+/// The state between frames.
+class WalkCache {
+public:
+    WalkCache() = default;
+    /// blended: boxes of what is drawn after the pictures, at all times. A picture has no depth that hides them, so that none may
+    /// stand before one of them.
+    WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vector<Box> blended = {});
+    [[nodiscard]] bool any() const { return !held_.empty(); }
+    [[nodiscard]] const SceneBoxes& boxes() const { return boxes_; }
+    [[nodiscard]] const HeldPicture& held(Index box) const { return held_[box]; }
+    [[nodiscard]] std::uint64_t bytes() const { return slots_.bytes(); }
+
+    /// Forgets all pictures: the light is another, or what is drawn.
+    void forget();
+
+    /// Begins a frame: what the pictures cover for all eyes within a distance of one. Complete, boxes without contents included;
+    /// no bit where no picture is valid.
+    const model::CoverBits& cover(const ViewPixels& pixels, double radius_m);
+
+    /// What the last cut's items cost and show, node by node: so much could be saved. `covered`: of the set of that cut; what
+    /// lies there is not drawn, so its last cost stays.
+    void begin_costs(const model::CoverBits& covered);
+    void add_cost(model::Index node, float us, float value);
+    void end_costs();
+
+    /// Pictures that pay, the best first. Valid until the next call.
+    std::span<const CacheOffer> plan(const PlanView& view);
+    [[nodiscard]] std::span<const CacheOffer> offers() const { return offers_; }  ///< of the last plan()
+    /// The box gets the picture: drop what no set relies on, where there is no room. False: there is none. Until captured(), its
+    /// slot holds nothing.
+    bool take(const CacheOffer& offer);
+    /// Boxes whose new pictures are to be captured.
+    [[nodiscard]] std::span<const Index> pending() const { return pending_; }
+    void captured() { pending_.clear(); }
+    void drop(Index box);
+
+    /// What a frame draws for a covered set: the largest valid pictures in view, back to front. No eye but one: radius 0. Valid
+    /// until the next call.
+    const CacheDraws& draws(const model::CoverBits& set, const ViewPixels& pixels, const model::Frustum& frustum);
+    [[nodiscard]] std::span<const Index> shown() const { return draws_.boxes; }        ///< of the last draws()
+    [[nodiscard]] std::span<const Index> unserved() const { return draws_.unserved; }  ///< of the last draws()
+    /// Predicted, to draw a box's picture.
+    [[nodiscard]] float draw_us(Index box, const dvec3& eye, double pixel_rad, double view_px) const;
+
+private:
+    /// What a new picture of a box would bring, as it was worked out a few frames ago.
+    struct Fact {
+        float net_us = 0;  ///< a frame; 0: no picture, or none that pays
+    };
+    /// A sphere as an eye sees it.
+    struct Cone {
+        dvec3 direction{0.0};
+        double cos = -1, sin = 0;  ///< of half its angle; from inside: all directions
+        double far_m = 0;
+    };
+    [[nodiscard]] static Cone cone_of(const Box& box, const dvec3& eye);
+    /// A box that may get a picture.
+    struct Candidate {
+        Index box = 0;
+        float net_us = 0;
+    };
+    [[nodiscard]] bool work_out(Index box, const PlanView& view, CacheOffer& offer) const;
+    void refresh_facts(const PlanView& view);
+    [[nodiscard]] float own_net_us(Index box, const PlanView& view) const;
+    [[nodiscard]] Index common_box(Index a, Index b) const;
+    void choose(Index box, const PlanView& view);
+    void draw_below(Index box, const ViewPixels& pixels, const model::Frustum& frustum);
+    [[nodiscard]] bool serves_on(Index box, const PlanView& view) const;
+    [[nodiscard]] bool make_room(std::uint32_t texels, Slot& slot);
+    void look_from(const dvec3& eye);
+    [[nodiscard]] bool before_blended(const Box& box) const;
+
+    SceneBoxes boxes_;
+    WalkCacheOptions options_;
+    Slots slots_;
+    std::vector<HeldPicture> held_;            ///< by box
+    std::vector<std::uint64_t> last_covered_;  ///< by box: frame in which a set was told of it
+    std::uint64_t frame_ = 0;                  ///< counts cover()
+    model::CoverBits covered_;
+    std::vector<float> shown_value_, value_;  ///< by box: of the last cut; of the last cut that drew it
+    model::CoverBits set_;                    ///< of the last cut
+    std::vector<float> across_us_;            ///< by box: of what lies across its children, to go only with all of them
+    std::vector<float> cost_us_, saving_us_;  ///< by box: of the last cut; what a picture would save in a frame
+    std::vector<Fact> facts_;                 ///< by box
+    std::vector<float> own_us_, best_us_;     ///< by box: net of a picture; of the best boxes at and below
+    Index next_fact_ = 0;
+    std::vector<Box> blended_;
+    std::vector<Cone> cones_;  ///< of blended_, from an eye
+    dvec3 cones_eye_{0.0};
+    std::vector<Candidate> candidates_;
+    std::vector<CacheOffer> offers_;
+    std::vector<Index> pending_;
+    std::vector<bool> relies_;  ///< by box: a set needs something below it
+    CacheDraws draws_;
+};
+
+}  // namespace surefoot::cache

@@ -1,0 +1,310 @@
+// The engine's image cache: what pictures cover is told to the workers, new pictures are offered before a selection and captured
+// after it, and what they cover is drawn by them after the last slice.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "render/cache/validity.hpp"
+#include "render/drawn_items.hpp"
+#include "render/effects/effects.hpp"
+#include "render/engine_impl.hpp"
+#include "render/select/budget.hpp"
+
+namespace surefoot {
+
+namespace {
+
+constexpr double off_course_m = 0.03;    // how far eyes may be beside a straight course in the next frames
+constexpr double may_turn_rad = 0.1;     // while a picture lives, beyond what the next frames may
+constexpr double jump_m = 2;             // in a frame: no course leads there
+constexpr double unlimited_share = 0.1;  // of the budget, for new pictures where nothing limits what a frame spends
+constexpr double limited_share = 0.25;   // the same where forms compete with them
+constexpr double usual_budget_us = 33'333;
+constexpr double value_share = 1e-5;             // of the picture: of what saves time that nothing else can use
+constexpr std::uint32_t first_picture_item = 1;  // of ItemKind::refresh; the shadow map is below
+constexpr std::size_t uncovered_chunk = 32;
+
+gl::CachePicture to_device(const cache::HeldPicture& held) {
+    const cache::Picture& picture = held.picture;
+    gl::CachePicture to;
+    to.place = {held.slot.layer, held.slot.column, held.slot.row, held.slot.texels};
+    to.eye = picture.eye;
+    to.right = picture.right;
+    to.up = picture.up;
+    to.forward = picture.forward;
+    to.plane_m = picture.plane_m;
+    to.low_m = picture.low_m;
+    to.side_m = picture.side_m;
+    to.box = held.box;
+    return to;
+}
+
+/// Leaves that no picture may show: what moves, what is drawn with ordered transparency, and what changes with the time.
+std::vector<bool> not_for_pictures(const model::Model& model, bool moving_shadows) {
+    const model::EffectMask changing =
+        effects::moving_effects() | model::effect_blend | (moving_shadows ? model::EffectMask{model::effect_moving_shadow} : 0U);
+    std::vector<bool> excluded(model.nodes.size(), false);
+    for (model::Index n = 0; n < model.nodes.size(); ++n) {
+        const model::Node& node = model.nodes[n];
+        const model::EffectMask effects = model.reps[node.first_rep + node.rep_count - 1].effects;
+        excluded[n] = node.child_count == 0 && ((effects & changing) != 0 || model::motion_of(model, node) != model::none);
+    }
+    return excluded;
+}
+
+/// Of leaves with ordered transparency.
+std::vector<Box> blended_boxes(const model::Model& model) {
+    std::vector<Box> boxes;
+    for (const model::Node& node : model.nodes)
+        if (node.child_count == 0 && (model.reps[node.first_rep + node.rep_count - 1].effects & model::effect_blend) != 0)
+            boxes.push_back(node.box);
+    return boxes;
+}
+
+}  // namespace
+
+/// Where the device has layers for pictures. Nothing else of the engine changes without them.
+Result<void> Engine::Impl::make_pictures() {
+    if (device->picture_layers() == 0) return {};
+    auto boxes = cache::SceneBoxes::make(model, not_for_pictures(model, shadow.any()));
+    if (!boxes) return boxes.error();
+    boxes->price_captures(model, costs);
+    cache::WalkCacheOptions how;
+    how.layers = device->picture_layers();
+    how.picture_us = costs.picture_us;
+    how.picture_ns_per_pixel = costs.picture_ns_per_pixel;
+    how.capture_us = costs.capture_us;
+    how.capture_ns_per_texel = costs.capture_ns_per_texel;
+    pictures = cache::WalkCache(std::move(*boxes), how, blended_boxes(model));
+    for (const model::Index n : pictures.boxes().nodes())
+        picture_items.push_back({n, model.nodes[n].first_rep + model.nodes[n].rep_count - 1});
+    shown_pictures.reserve(pictures.boxes().size());
+    uncovered.reserve(model.nodes.size());
+    is_uncovered.resize(model.nodes.size(), false);
+    preparer->set_cover(&pictures.boxes());
+    return {};
+}
+
+void Engine::Impl::forget_pictures() {
+    if (pictures.any()) pictures.forget();
+}
+
+const model::CoverBits& Engine::cover(const Pose& now, const prepare::Region& next) {
+    Impl& e = *impl_;
+    e.draws.plays();
+    if (!e.pictures.any()) return e.cover_bits;
+    const dvec3 step = now.position - e.course.eye;
+    const bool jumps = !e.course_known || !(glm::length(step) <= jump_m);
+    e.course.eye = now.position;
+    e.course.step_m = jumps ? dvec3(0) : step;
+    e.course.radius_m = off_course_m;
+    e.course_known = true;
+    // Eyes on the way to the region's middle, and as far beyond it.
+    const double way_m = glm::length(next.centre.position - now.position) + off_course_m;
+    e.turn_rad = next.angle_rad;
+    return e.cover_bits = e.pictures.cover(cache::view_pixels(next.centre, e.options.device.viewport, next.angle_rad),
+                                           std::min(way_m, next.radius_m));
+}
+
+/// The pictures of the set are drawn whatever else is. Their price is part of all predictions.
+void Engine::Impl::prepay_pictures(const prepare::PreparedFrame& set) {
+    pictures_us = 0;
+    if (!pictures.any()) return;
+    const Pose& pose = set.region.centre;
+    const model::Viewport viewport = options.device.viewport;
+    const model::Frustum seen = model::make_frustum(pose, viewport, model::far_corners_m(model.nodes[0].box));
+    const double pixel_rad = model::pixel_angle(pose, viewport) / static_cast<double>(drawn_resolution);
+    const double view_px = 1.0 * viewport.width * viewport.height;
+    for (const cache::Index box : pictures.draws(set.covered, cache::view_pixels(pose, viewport), seen).boxes)
+        pictures_us += static_cast<double>(pictures.draw_us(box, pose.position, pixel_rad, view_px));
+    if (pictures_us > 0) offered.prepay({select::ItemKind::pictures, 0, static_cast<float>(pictures_us), 0});
+}
+
+/// What a new picture saves until it fails, at the rate at which this frame trades time for value.
+void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const select::SelectInput& input) {
+    if (!pictures.any() || !course_known) return;
+    const Pose& pose = set.region.centre;
+    const model::Viewport viewport = options.device.viewport;
+    const model::Frustum seen =
+        model::make_frustum(pose, viewport, model::far_corners_m(model.nodes[0].box), set.region.radius_m, set.region.angle_rad);
+    cache::PlanView view;
+    view.course = course;
+    view.pixels = cache::view_pixels({course.eye, pose.orientation, pose.fov_y_rad}, viewport, turn_rad + may_turn_rad);
+    view.frustum = &seen;
+    view.pixel_rad = model::pixel_angle(pose, viewport) / static_cast<double>(drawn_resolution);
+    view.view_px = 1.0 * viewport.width * viewport.height;
+    view.combine = combine();
+    const std::span<const cache::CacheOffer> plan_of_pictures = pictures.plan(view);
+    if (plan_of_pictures.empty()) return;
+    const auto room_us = static_cast<float>(select::Budget(input).room_us());
+    const float a_ms = by_budget ? set.curve.value_at(room_us + 1000.0F) - set.curve.value_at(room_us) : 0.0F;
+    const double rate = std::max(1e-3 * static_cast<double>(a_ms), value_share * set.full_value / usual_budget_us);
+    const double budget_us = std::isfinite(input.budget_us) ? input.budget_us : usual_budget_us;
+    double left_us = (by_budget ? limited_share : unlimited_share) * budget_us;
+    for (const cache::CacheOffer& offer : plan_of_pictures) {
+        if (static_cast<double>(offer.price_us) > left_us) continue;
+        const auto worth_of = static_cast<float>(std::max(rate * static_cast<double>(offer.gain_us), 1e-9));
+        if (!offered.offer({select::ItemKind::refresh, first_picture_item + offer.box, offer.price_us, worth_of})) continue;
+        left_us -= static_cast<double>(offer.price_us);
+    }
+}
+
+/// Bought pictures get their places; where there is none, their time stays free. And the cut says what could be saved.
+void Engine::Impl::take_pictures() {
+    if (!pictures.any()) return;
+    const std::span<const select::Item> list = offered.offered();
+    for (const cache::CacheOffer& offer : pictures.offers()) {
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            if (list[i].name() != select::ItemName{select::ItemKind::refresh, first_picture_item + offer.box}) continue;
+            if (cut.bought.has(i) && !pictures.take(offer)) cut.bought.cancel(i, list[i]);
+        }
+    }
+    const model::FrameCombine by = combine();
+    pictures.begin_costs(prepared->covered);
+    for (const select::CutItem& item : cut.items) {
+        const model::ItemCost& cost = prepared->choices[item.choice].cost;
+        pictures.add_cost(item.node, by.frame_us(cost.submit_us, cost.raster_us) - by.fixed_us,
+                          prepared->choices[item.choice].value);
+    }
+    pictures.end_costs();
+}
+
+/// The device draws them with the next picture that begins.
+void Engine::Impl::capture_pictures(SubmitReport& report) {
+    device->draws.plays();
+    for (std::size_t i = pictures.pending().size(); i-- > 0;) {
+        const cache::Index box = pictures.pending()[i];
+        const std::span<const gl::DrawItem> items =
+            std::span(picture_items).subspan(pictures.boxes().first_node(box), pictures.boxes().nodes(box).size());
+        if (device->capture_picture(to_device(pictures.held(box)), items))
+            ++report.pictures_made;
+        else
+            pictures.drop(box);
+    }
+    pictures.captured();
+    for (std::size_t i = 0; i < offered.offered().size(); ++i) {
+        const select::Item& item = offered.offered()[i];
+        if (item.kind == select::ItemKind::refresh && item.what >= first_picture_item && cut.bought.has(i))
+            report.captures_us += static_cast<double>(item.cost_us);
+    }
+}
+
+/// Leaves that the set left out because of pictures that are not valid at this pose.
+void Engine::Impl::find_uncovered(const Pose& pose) {
+    uncovered.clear();
+    if (pictures.unserved().empty()) return;
+    const model::ViewScale scale = drawn_scale(pose);
+    const model::EffectMask hidden_now = drawn_without();
+    for (const cache::Index box : pictures.unserved()) {
+        for (const model::Index n : pictures.boxes().leaves(box)) {
+            const model::Node& node = model.nodes[n];
+            if (is_uncovered[n] || !pictures.boxes().covered(n, prepared->covered) || !in_view(n)) continue;
+            is_uncovered[n] = true;
+            UncoveredItem item{n, node.first_rep + node.rep_count - 1, node.first_rep, {}, {}, 0, 0};
+            item.distance_m = static_cast<float>(std::max(node.box.distance(pose.position), model::near_plane_m));
+            while (!model.reps[item.coarse].everywhere && item.coarse < item.full) ++item.coarse;
+            const model::ItemCosts& prices = preparer->item_costs();
+            item.full_cost = prices.of(item.full, node.box, pose.position, scale, item.pixels, hidden_now);
+            item.coarse_cost = prices.of(item.coarse, node.box, pose.position, scale, item.pixels, hidden_now);
+            uncovered.push_back(item);
+        }
+    }
+    for (const UncoveredItem& item : uncovered) is_uncovered[item.node] = false;
+}
+
+/// Before a picture begins: new pictures are captured, and those of the set are chosen for the true pose.
+void Engine::Impl::begin_pictures(const Pose& pose, SubmitReport& report) {
+    after_us = pictures_value = 0;
+    pictures_as_forms = false;
+    shown_pictures.clear();
+    report.picture_bytes = pictures.bytes();
+    if (!pictures.any() || use_last) return;
+    if (drawn_without() != pictures_without) forget_pictures();
+    pictures_without = drawn_without();
+    capture_pictures(report);
+    const model::Viewport viewport = options.device.viewport;
+    const cache::CacheDraws& draws_now = pictures.draws(prepared->covered, cache::view_pixels(pose, viewport), frustum);
+    const double pixel_rad = model::pixel_angle(pose, viewport) / static_cast<double>(drawn_resolution);
+    const double view_px = 1.0 * viewport.width * viewport.height;
+    for (const cache::Index box : draws_now.boxes) {
+        shown_pictures.push_back(to_device(pictures.held(box)));
+        report.pictures_us += static_cast<double>(pictures.draw_us(box, pose.position, pixel_rad, view_px));
+    }
+    report.pictures = static_cast<std::uint32_t>(shown_pictures.size());
+    count_error(model::none, static_cast<float>(draws_now.worst_error_rad), 1, report);
+    pictures_value = draws_now.value;
+    find_uncovered(pose);
+    after_us = report.pictures_us;
+    for (const UncoveredItem& item : uncovered)
+        after_us += static_cast<double>(costs.combine.frame_us(item.coarse_cost.submit_us, item.coarse_cost.raster_us) -
+                                        costs.combine.fixed_us);
+}
+
+/// In full detail where that fits, else coarse: never a hole.
+void Engine::Impl::draw_uncovered(const SubmitLimits& limits, double start_us, model::ItemCost& so_far, SubmitReport& report) {
+    if (uncovered.empty() || use_last) return;
+    device->draws.plays();
+    bool full = report.downgraded_slices == 0;
+    float in_flight_us = 0;
+    for (std::size_t at = 0; at < uncovered.size(); at += uncovered_chunk) {
+        const auto chunk = std::span(uncovered).subspan(at, std::min(uncovered_chunk, uncovered.size() - at));
+        model::ItemCost next{costs.slice_us, 0}, coarse = next, rest;
+        for (const UncoveredItem& item : chunk) {
+            next += item.full_cost;
+            coarse += item.coarse_cost;
+            after_us -= static_cast<double>(costs.combine.frame_us(item.coarse_cost.submit_us, item.coarse_cost.raster_us) -
+                                            costs.combine.fixed_us);
+        }
+        full = full && in_time({so_far, next, coarse, rest, in_flight_us}, limits, start_us);
+        const std::size_t first = drawn.size();
+        for (const UncoveredItem& item : chunk) {
+            const model::Index rep = full ? item.full : item.coarse;
+            if (!push_within(drawn, {item.node, rep})) break;
+            floor.add(drawn.back(), item.pixels, !full && item.coarse != item.full);
+            report.triangles += model.reps[rep].triangles;
+            count_error(item.node, model.reps[rep].error_m / item.distance_m, model.nodes[item.node].importance, report);
+        }
+        device->draw(std::span<const gl::DrawItem>(drawn).subspan(first));
+        device->end_slice();
+        device->wait_slices(1);
+        const model::ItemCost& cost = full ? next : coarse;
+        so_far += cost;
+        in_flight_us = cost.raster_us;
+        report.uncovered_items += static_cast<std::uint32_t>(chunk.size());
+        ++report.slices;
+        if (!full) ++report.downgraded_slices;
+    }
+}
+
+void Engine::draw_pictures_as_forms() {
+    Impl& e = *impl_;
+    e.draws.plays();
+    if (!e.pictures.any() || e.shown_pictures.empty() || std::exchange(e.pictures_as_forms, true)) return;
+    const std::size_t first = e.drawn.size();
+    for (const cache::Index box : e.pictures.shown()) {
+        for (const model::Index n : e.pictures.boxes().leaves(box)) {
+            const model::Node& node = e.model.nodes[n];
+            if (e.is_uncovered[n] || !e.pictures.boxes().covered(n, e.prepared->covered) || !e.in_view(n)) continue;
+            if (!push_within(e.drawn, {n, node.first_rep + node.rep_count - 1})) break;
+            e.is_uncovered[n] = true;
+        }
+    }
+    for (std::size_t i = first; i < e.drawn.size(); ++i) e.is_uncovered[e.drawn[i].node] = false;
+}
+
+std::span<const gl::CachePicture> Engine::pictures() const {
+    impl_->draws.plays();
+    return impl_->rest_picture.samples() > 0 ? std::span<const gl::CachePicture>() : impl_->shown_pictures;
+}
+
+void Engine::Impl::draw_pictures(SubmitReport& report) {
+    if (shown_pictures.empty()) return;
+    device->draws.plays();
+    device->charge_us(report.pictures_us);
+    device->draw_pictures(shown_pictures);
+    device->end_slice();
+    device->wait_slices(1);
+    ++report.slices;
+}
+
+}  // namespace surefoot

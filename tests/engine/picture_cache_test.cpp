@@ -1,0 +1,220 @@
+// The image cache in frames: nothing is missing in any of them, spending stays within the budget, and off means as before.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "render/measure/image_metrics.hpp"
+#include "tests/engine/picture_walk.hpp"
+#include "tests/select/count_malloc.hpp"
+
+namespace surefoot {
+namespace {
+
+using test::holes;
+using test::PictureWalk;
+
+/// Along the edge of the forest, looking in, at 1.4 m/s.
+Pose along(const Engine& engine, int frame) {
+    Pose pose = test::forest_pose(engine);
+    pose.position.x += 1.4 / 30 * frame;
+    return pose;
+}
+
+TEST(PictureCache, AWalkHasNoHoleAndDrawsFewerTriangles) {
+    PictureWalk with(test::forest_model(), {}), without(test::forest_model(), {.layers = 0});
+    const Box& box = with.engine().model().nodes[0].box;
+    std::uint64_t triangles = 0, all_triangles = 0;
+    std::uint32_t pictures = 0, made = 0;
+    for (int i = 0; i < 40; ++i) {
+        Pose pose = along(with.engine(), i);
+        pose.position.z += 2 * box.half().z;  // all of it is ahead
+        const SubmitReport report = with.frame(pose);
+        EXPECT_TRUE(holes(with.engine(), pose).empty()) << i;
+        triangles += report.triangles;
+        all_triangles += without.frame(pose).triangles;
+        pictures += report.pictures;
+        made += report.pictures_made;
+        EXPECT_NEAR(report.value, 1, 1e-6) << i;
+        if (report.pictures == 0) continue;
+        EXPECT_GT(report.worst_error_rad, 0.0F);
+        EXPECT_LE(report.worst_error_rad, model::pixel_angle(pose, with.engine().options().device.viewport));
+    }
+
+    EXPECT_GT(pictures, 200U);
+    EXPECT_GT(made, 5U);
+    EXPECT_LT(made, pictures / 5) << "pictures serve again and again";
+    EXPECT_LT(static_cast<double>(triangles), 0.85 * static_cast<double>(all_triangles));
+}
+
+TEST(PictureCache, HardEyesLeaveNoHole) {
+    PictureWalk walk(test::forest_model(), {});
+    Pose pose;
+    for (int i = 0; i < 20; ++i) walk.frame(pose = along(walk.engine(), i));
+    EXPECT_FALSE(walk.engine().pictures().empty());
+    const Box world = walk.engine().model().nodes[0].box;
+    const std::vector<dvec3> eyes = {world.centre(), world.min, world.max, world.centre() + dvec3(0, 1e6, 0),
+                                     dvec3(world.min.x, world.centre().y, world.centre().z)};
+    for (const dvec3& eye : eyes) {
+        for (int i = 0; i < 4; ++i) {
+            Pose there = pose;
+            there.position = eye;
+            walk.frame(there);
+            EXPECT_TRUE(holes(walk.engine(), there).empty());
+        }
+        for (int i = 0; i < 6; ++i) walk.frame(pose);
+        EXPECT_TRUE(holes(walk.engine(), pose).empty());
+    }
+    Pose nowhere = pose;
+    nowhere.position.x = std::numeric_limits<double>::quiet_NaN();
+    walk.frame(nowhere);
+    EXPECT_TRUE(walk.engine().pictures().empty());
+    walk.frame(pose);
+    walk.frame(pose);
+    EXPECT_TRUE(holes(walk.engine(), pose).empty());
+}
+
+/// The set says that pictures show a part of the scene, and the pose is one from which they do not.
+TEST(PictureCache, WhatPicturesCannotShowAnyMoreIsDrawnInFullOrCoarse) {
+    PictureWalk walk(test::forest_model(), {});
+    Pose pose;
+    for (int i = 0; i < 20; ++i) walk.frame(pose = along(walk.engine(), i));
+    ASSERT_GT(walk.set().left_out, 0U);
+    Pose beside = pose;
+    beside.position.x += 25;
+    for (const double limit_us : {test::ample_us, 0.0}) {
+        walk.engine().device().draws.plays();
+        walk.engine().select(walk.set(), test::ample_us, {}, 0);
+        const SubmitReport report = walk.engine().submit(beside, {.elapsed_us = 0, .limit_us = limit_us});
+        EXPECT_GT(report.uncovered_items, 0U);
+        EXPECT_EQ(report.downgraded_slices > 0, limit_us == 0);
+    }
+    walk.engine().select(walk.set(), test::ample_us, {}, 0);
+    walk.engine().submit(pose, {.elapsed_us = 0, .limit_us = test::ample_us});
+    EXPECT_FALSE(walk.engine().pictures().empty());
+    model::Daylight light;
+    light.sun_light = vec3(0.1F);
+    walk.engine().set_light(light);
+    walk.engine().select(walk.set(), test::ample_us, {}, 0);
+    const SubmitReport of_light = walk.engine().submit(pose, {.elapsed_us = 0, .limit_us = test::ample_us});
+    EXPECT_LE(walk.engine().pictures().size(), of_light.pictures_made) << "the old ones are of another light";
+    EXPECT_TRUE(holes(walk.engine(), pose).empty());
+}
+
+TEST(PictureCache, NoRoomForAPictureMeansNoPicture) {
+    PictureWalk one(test::forest_model(), {.layers = 1}), none(test::forest_model(), {.layers = 0});
+    for (int i = 0; i < 20; ++i) {
+        const Pose pose = along(one.engine(), i);
+        const SubmitReport of_one = one.frame(pose), of_none = none.frame(pose);
+        EXPECT_LE(of_one.picture_bytes, 256U * 256 * 4);
+        EXPECT_TRUE(holes(one.engine(), pose).empty()) << i;
+        EXPECT_EQ(of_none.pictures + of_none.pictures_made, 0U);
+    }
+}
+
+TEST(PictureCache, NewPicturesAreBoughtWithinTheBudgetAndCharged) {
+    for (const char* selector : {"best-first", "curve-budget", "threshold"}) {
+        PictureWalk walk(test::forest_model(), {.selector = selector});
+        const double full_us = walk.frame(along(walk.engine(), 0)).predicted_us, budget_us = 0.6 * full_us;
+        std::uint32_t made = 0;
+        for (int i = 1; i < 30; ++i) {
+            const Pose pose = along(walk.engine(), i);
+            const double before_us = walk.engine().device().charged_us();
+            const SubmitReport report = walk.frame(pose, budget_us);
+            EXPECT_LE(report.predicted_us, budget_us) << selector << ' ' << i;
+            EXPECT_NEAR(walk.engine().device().charged_us() - before_us, report.predicted_us, 2e-2 * report.predicted_us)
+                << "forms are priced for a region";
+            EXPECT_TRUE(holes(walk.engine(), pose).empty()) << selector << ' ' << i;
+            made += report.pictures_made;
+        }
+        EXPECT_GT(made, 0U) << selector;
+    }
+}
+
+TEST(PictureCache, WithoutABudgetNewPicturesTakeATenthOfAFrameAtMost) {
+    PictureWalk walk(test::forest_model(), {});
+    constexpr double budget_us = 33'333;
+    for (int i = 0; i < 30; ++i) {
+        const SubmitReport report = walk.frame(along(walk.engine(), i), budget_us);
+        EXPECT_LE(report.captures_us, 0.1 * budget_us + 1) << i;
+    }
+}
+
+TEST(PictureCache, IsTheSameAtAnyNumberOfWorkers) {
+    PictureWalk one(test::forest_model(), {}), four(test::forest_model(), {.workers = 4});
+    for (int i = 0; i < 20; ++i) {
+        const SubmitReport a = one.frame(along(one.engine(), i)), b = four.frame(along(one.engine(), i));
+        EXPECT_EQ(a.triangles, b.triangles) << i;
+        EXPECT_EQ(a.pictures, b.pictures) << i;
+        EXPECT_EQ(a.pictures_made, b.pictures_made) << i;
+        EXPECT_EQ(a.predicted_us, b.predicted_us) << i;
+        EXPECT_EQ(one.set().covered, four.set().covered) << i;
+    }
+}
+
+TEST(PictureCache, FramesAreRememberedWithoutTheirPictures) {
+    PictureWalk walk(test::forest_model(), {});
+    Pose pose;
+    for (int i = 0; i < 20; ++i) walk.frame(pose = along(walk.engine(), i));
+    ASSERT_FALSE(walk.engine().pictures().empty());
+    const std::size_t before = walk.engine().drawn().size();
+    walk.engine().draw_pictures_as_forms();
+    EXPECT_GT(walk.engine().drawn().size(), before);
+    std::vector<bool> drawn(walk.engine().model().nodes.size(), false);
+    for (const gl::DrawItem& item : walk.engine().drawn()) drawn[item.node] = true;
+    for (const gl::DrawItem& item : walk.engine().full_detail(pose)) EXPECT_TRUE(drawn[item.node]);
+}
+
+TEST(PictureCache, FramesAllocateNothing) {
+    PictureWalk walk(test::forest_model(), {});
+    std::uint32_t made = 0;
+    std::uint64_t allocated = 0;
+    for (int i = 0; i < 30; ++i) {
+        const Pose pose = along(walk.engine(), i);
+        walk.prepare(pose);
+        const std::uint64_t before = test::allocations();
+        const SubmitReport report = walk.draw(pose, test::ample_us, test::ample_us);
+        walk.engine().draw_pictures_as_forms();
+        allocated += test::allocations() - before;
+        made += report.pictures_made;
+    }
+    EXPECT_GT(made, 0U);
+    EXPECT_EQ(allocated, 0U);
+}
+
+/// Off means that nothing of the frame is another one.
+TEST(PictureCache, WithoutLayersFramesAreAsTheyWere) {
+    PictureWalk off(test::forest_model(), {.layers = 0});
+    const auto plain = test::forest_engine();
+    ASSERT_TRUE(plain);
+    EXPECT_TRUE(off.engine().cover(along(off.engine(), 0), {}).none());
+    off.frame(along(off.engine(), 0));
+    EXPECT_EQ(off.set().left_out, 0U);
+    EXPECT_EQ(off.set().covered.count(), 0U);
+    EXPECT_EQ(off.engine().offered().offered().size(), 0U);
+    EXPECT_EQ(off.engine().drawn_capacity(), plain->drawn_capacity());
+}
+
+/// As drawn by a device: a walk's frames beside full detail from the same eye.
+TEST(PictureCache, ShowsWhatFullDetailShows) {
+    PictureWalk walk(test::forest_model(), {.kind = gl::BackendKind::egl});
+    if (walk.absent()) GTEST_SKIP() << "no EGL here";
+    Engine& engine = walk.engine();
+    engine.device().draws.plays();
+    std::uint32_t pictures = 0;
+    for (int i = 0; i < 12; ++i) {
+        const Pose pose = along(engine, i);
+        pictures += walk.frame(pose).pictures;
+        if (i % 6 != 5) continue;
+        const auto cached = engine.device().read_pixels();
+        engine.draw_unbudgeted(pose, engine.full_detail(pose));
+        const auto full = engine.device().read_pixels();
+        ASSERT_TRUE(cached && full);
+        EXPECT_NE(cached->rgba, full->rgba) << "pictures are drawn";
+        EXPECT_GT(10 * std::log10(255.0 * 255.0 / measure::snr(cached->rgba, full->rgba).mse), 30) << i;
+    }
+    EXPECT_GT(pictures, 20U);
+}
+
+}  // namespace
+}  // namespace surefoot
