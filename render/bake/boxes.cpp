@@ -1,6 +1,7 @@
 // Leaves are drawn one by one; clusters are put together from their children's pictures, a face after the other.
 #include "render/bake/boxes.hpp"
 
+#include "render/bake/box_light.hpp"
 #include "render/bake/level_coverage.hpp"
 #include "render/bake/opaque_boxes.hpp"
 #include "render/model/loss_groups.hpp"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 namespace surefoot::bake {
 
@@ -49,26 +51,37 @@ std::vector<BoxForm> capture_boxes(const model::Model& model, const BoxRequest& 
         boxes[n].box = model.nodes[n].box;
         boxes[n].textured = request.textured;
         boxes[n].pixels = request.pixels;
+        boxes[n].lit = request.textured && !model.sun_seen.empty();
     }
     std::atomic<bool> go{true};
     const std::vector<Index> leaves = wanted_leaves(model, request);
+    std::optional<BoxLight> light;
+    if (request.textured && !model.sun_seen.empty()) light.emplace(model);
+    const auto capture = [&](Index n, std::uint32_t face, const FormPicture& seen) {
+        std::vector<FaceSample> shown;
+        FaceCapture& to = boxes[n].faces[face];
+        to = capture_face(seen, model.nodes[n].box, face, request.pixels, light ? &shown : nullptr);
+        if (light && to.covered > 0) light->take_from(to, {seen, shown, request.pixels});
+    };
     for_all(leaves.size(), [&](std::size_t i) {
         if (!go) return;
         const Node& node = model.nodes[leaves[i]];
         FormPicture seen;
+        seen.owner = leaves[i];
+        seen.keeps_sources = light.has_value();
         for (std::uint32_t face = 0; face < box_faces; ++face) {
             seen.clear(view_of(node.box, direction_of_face(face), tree.middle(), samples), request.textured);
             draw_form(model, model.reps[node.first_rep + node.rep_count - 1], seen);
-            boxes[leaves[i]].faces[face] = capture_face(seen, node.box, face, request.pixels);
+            capture(leaves[i], face, seen);
         }
         if (!step()) go = false;
     });
     for (std::uint32_t face = 0; face < box_faces && go; ++face) {
         const auto use = [&](Index n, const FormPicture& seen) {
-            if (request.wanted[n]) boxes[n].faces[face] = capture_face(seen, model.nodes[n].box, face, request.pixels);
+            if (request.wanted[n]) capture(n, face, seen);
             return step();
         };
-        if (!tree.look({direction_of_face(face), samples, request.textured}, for_all, use)) go = false;
+        if (!tree.look({direction_of_face(face), samples, request.textured, light.has_value()}, for_all, use)) go = false;
     }
     for (BoxForm& box : boxes) {
         // A box without one of its sides would be a hole from there.
@@ -166,6 +179,8 @@ std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs, const std::vec
         group_losses.insert(group_losses.end(), end - static_cast<std::ptrdiff_t>(kept), end);
     }
     model_.vertices.resize(vertices_);
+    if (!model_.sun_seen.empty()) model_.sun_seen.resize(vertices_);
+    if (!model_.lamp_light.empty()) model_.lamp_light.resize(vertices_);
     model_.indices.resize(indices_);
     model_.parts.resize(parts_);
     model_.placements.resize(placements_);

@@ -74,8 +74,21 @@ Direction direction_of_face(std::uint32_t face) {
     return from;
 }
 
-FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t face, std::uint32_t pixels) {
+std::array<std::uint32_t, 4> shown_texels(const FaceCapture& face, std::uint32_t pixels) {
+    std::array<std::uint32_t, 4> range{pixels, pixels, 0, 0};
+    for (std::uint32_t y = 0; y < pixels; ++y) {
+        for (std::uint32_t x = 0; x < pixels; ++x) {
+            if (face.rgba[std::size_t{4} * (static_cast<std::size_t>(y) * pixels + x) + 3] < opaque_alpha) continue;
+            range = {std::min(range[0], x), std::min(range[1], y), std::max(range[2], x + 1), std::max(range[3], y + 1)};
+        }
+    }
+    return range;
+}
+
+FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t face, std::uint32_t pixels,
+                         std::vector<FaceSample>* shown) {
     FaceCapture out;
+    if (shown != nullptr) shown->clear();
     out.rgba.assign(std::size_t{4} * pixels * pixels, 0);
     const FormView& view = seen.view;
     if (seen.samples.empty()) return out;
@@ -105,11 +118,13 @@ FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t 
             const Span &row = rows[y], &column = columns[x];
             for (std::uint32_t sy = row.first; sy < row.first + row.count; ++sy) {
                 for (std::uint32_t sx = column.first; sx < column.first + column.count; ++sx) {
-                    const FormSample& sample = seen.samples[static_cast<std::size_t>(sy) * view.width + sx];
+                    const std::uint32_t at = sy * view.width + sx;
+                    const FormSample& sample = seen.samples[at];
                     const double depth = front - static_cast<double>(sample.depth);
                     if (!sample.covered() || depth > near_half_m) continue;
                     out.depth_m = std::max(out.depth_m, static_cast<float>(depth));
                     texel.add(sample);
+                    if (shown != nullptr) shown->push_back({at, y * pixels + x});
                 }
             }
             const std::uint64_t count = std::uint64_t{row.count} * column.count;

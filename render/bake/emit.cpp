@@ -114,21 +114,19 @@ model::Index add_box_material(const BoxForm& form, model::Model& model) {
     facts.image = true;
     facts.in_fog = model.light.fog_visibility_m > 0;
     facts.alpha = m.alpha;
-    m.effects = effects::called_for_by(facts);
+    m.effects = effects::called_for_by(facts) | (form.lit ? model::effect_lit_picture : model::EffectMask{0});
     model.materials.push_back(m);
     return static_cast<model::Index>(model.materials.size() - 1);
 }
 
-/// The texels of a face that show something: columns and rows, from and to.
-std::array<std::uint32_t, 4> shown_texels(const FaceCapture& face, std::uint32_t n) {
-    std::array<std::uint32_t, 4> range{n, n, 0, 0};
-    for (std::uint32_t y = 0; y < n; ++y) {
-        for (std::uint32_t x = 0; x < n; ++x) {
-            if (face.rgba[std::size_t{4} * (static_cast<std::size_t>(y) * n + x) + 3] < opaque_alpha) continue;
-            range = {std::min(range[0], x), std::min(range[1], y), std::max(range[2], x + 1), std::max(range[3], y + 1)};
-        }
-    }
-    return range;
+/// To the vertex that was added last. Those before it without light of their own see all of the sun and no lamp.
+void give_light(const FaceLight& light, std::size_t corner, model::Model& model) {
+    std::copy(light.of_all.from.begin(), light.of_all.from.end(), model.vertices.back().hidden);
+    model.sun_seen.resize(model.vertices.size(), model::always_in_sun);
+    model.sun_seen.back() = light.of_all.sun;
+    if (model.lamp_light.empty()) return;
+    model.lamp_light.resize(model.vertices.size());
+    std::copy(light.lamps[corner].begin(), light.lamps[corner].end(), model.lamp_light.back().before);
 }
 
 /// One face: four vertices and two triangles. `f`: down and up along x, y, z. Only its part that shows something.
@@ -154,6 +152,7 @@ void emit_face(const BoxForm& form, std::uint32_t f, model::Model& model, model:
         v.uv[0] = (static_cast<float>(left) + x) / static_cast<float>(columns * cells.cell);
         v.uv[1] = (static_cast<float>(low) + y) / static_cast<float>(rows * cells.cell);
         model.vertices.push_back(v);
+        if (form.lit) give_light(form.faces[f].light, (cw ? 2U : 0U) + (cu ? 1U : 0U), model);
     }
     part.vertex_count += 4;
     for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) model.indices.push_back(base + i);

@@ -44,6 +44,7 @@ struct BoxForm {
     Box box;
     float error_m = 0;
     bool textured = false;     ///< else each face has one colour
+    bool lit = false;          ///< pictures are without light, which faces have
     std::uint32_t pixels = 0;  ///< of a face's side
     [[nodiscard]] std::uint32_t shown_faces() const {
         return static_cast<std::uint32_t>(

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <utility>
+
+#include "render/effects/surface_light.hpp"
+#include "render/model/daylight.hpp"
 
 namespace surefoot::bake {
 
@@ -19,6 +23,21 @@ constexpr std::uint32_t few_columns = 6;  // so many samples are tried sooner th
 float threshold_of(std::int64_t x, std::int64_t y) {
     constexpr std::array<std::uint8_t, 16> order = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
     return (static_cast<float>(order[static_cast<std::size_t>((y & 3) * 4 + (x & 3))]) + 0.5F) / 16.0F;
+}
+
+/// 0..1, without order, and the same in every picture.
+float chance_of(std::int64_t x, std::int64_t y) {
+    std::uint32_t h = static_cast<std::uint32_t>(x) * 0x9e3779b1U ^ static_cast<std::uint32_t>(y) * 0x85ebca77U;
+    h = (h ^ h >> 15U) * 0x2c1b3c6dU;
+    h = (h ^ h >> 12U) * 0x297a2d39U;
+    return static_cast<float>((h ^ h >> 15U) >> 8U) / static_cast<float>(1U << 24U);
+}
+
+/// By what a vertex of a box's face is lit in the model's own light, as all vertices of that face.
+vec3 light_of_picture(const model::Model& model, model::Index vertex) {
+    const model::Vertex& v = model.vertices[vertex];
+    effects::PictureLight light{{v.hidden[0], v.hidden[1], v.hidden[2], 0}, model.sun_seen[vertex], {}};
+    return effects::light_on_picture(light, model::daylight_of_model(model.sun_direction, model.light));
 }
 
 /// The mip level with about one texel a pixel.
@@ -98,25 +117,35 @@ struct Painter {
         std::array<vec4, 3> colours;
         std::array<vec2, 3> uv;
         std::array<Texels, picture_levels> texels;
+        std::array<SampleSource, 3> sources;
     };
 
+    [[nodiscard]] model::Index index_of(const model::Vertex& v) const {
+        return static_cast<model::Index>(&v - model.vertices.data());
+    }
+    /// Unit, in the world, and whether it was turned to the eye.
+    [[nodiscard]] std::pair<vec3, bool> normal_of(const model::Vertex& v) const {
+        vec3 n = cofactor * vec3(v.normal[0], v.normal[1], v.normal[2]);
+        n *= (mirrored ? -1.0F : 1.0F) / std::sqrt(std::max(glm::dot(n, n), 1e-30F));
+        const bool turned = material.two_sided && glm::dot(n, picture.view.direction.towards) < 0.0F;
+        return {turned ? -n : n, turned};
+    }
     /// Colours before the texture, 0 to about 1.
     [[nodiscard]] vec4 lit(const model::Vertex& v) const {
         vec4 colour(material.colour[0], material.colour[1], material.colour[2], material.colour[3]);
         if ((material.effects & model::effect_vertex_colour) != 0)
             colour *= vec4(v.colour[0], v.colour[1], v.colour[2], v.colour[3]) / 255.0F;
+        if (picture.lit && own_vertices && (material.effects & model::effect_lit_picture) != 0)
+            return {vec3(colour) * light_of_picture(model, index_of(v)), colour.a};
         constexpr model::EffectMask light = model::effect_sun | model::effect_openness;
         if (!picture.lit || (material.effects & light) == 0) return colour;
-        vec3 n = cofactor * vec3(v.normal[0], v.normal[1], v.normal[2]);
-        n *= (mirrored ? -1.0F : 1.0F) / std::sqrt(std::max(glm::dot(n, n), 1e-30F));
-        const bool turned = material.two_sided && glm::dot(n, picture.view.direction.towards) < 0.0F;
-        if (turned) n = -n;
+        const auto [n, turned] = normal_of(v);
         vec3 by_light(1.0F);
         if ((material.effects & model::effect_sun) != 0) {
             const vec3 sky = glm::mix(vec3(0.34F, 0.32F, 0.30F), vec3(0.52F, 0.56F, 0.62F), 0.5F * n.y + 0.5F);
             float sun = std::max(glm::dot(n, vec3(model.sun_direction)), 0.0F);
             if (own_vertices && (material.effects & model::effect_shadow) != 0)
-                sun *= static_cast<float>(model.sun_seen[static_cast<std::size_t>(&v - model.vertices.data())].share[0]) / 255.0F;
+                sun *= static_cast<float>(model.sun_seen[index_of(v)].share[0]) / 255.0F;
             by_light = sky + vec3(0.56F, 0.53F, 0.47F) * sun;
         }
         if ((material.effects & model::effect_openness) != 0) {
@@ -153,6 +182,9 @@ void Painter::draw(std::array<Corner, 3> corners) const {
 Painter::Triangle Painter::triangle_of(const std::array<Corner, 3>& corners, float area) const {
     Triangle t;
     for (std::size_t k = 0; k < 3; ++k) t.colours[k] = lit(*corners[k].vertex), t.uv[k] = uv_of(*corners[k].vertex);
+    for (std::size_t k = 0; k < 3 && picture.keeps_sources && own_vertices; ++k)
+        t.sources[k] = {index_of(*corners[k].vertex), 2 * static_cast<model::Index>(&material - model.materials.data()) +
+                                                          (normal_of(*corners[k].vertex).second ? 1U : 0U)};
     if (textured()) {
         const model::Texture& texture = model.textures[material.texture];
         const float texels_a_pixel = std::abs(cross(t.uv[1] - t.uv[0], t.uv[2] - t.uv[0])) * static_cast<float>(texture.width) *
@@ -203,6 +235,9 @@ void Painter::put(const Triangle& triangle, const vec3& w, float depth, std::uin
     sample.depth = depth;
     sample.owner = picture.owner;
     for (std::size_t k = 0; k < picture_levels; ++k) sample.rgb[k] = bytes_of(colours[k]);
+    if (!picture.keeps_sources) return;
+    const float at = chance_of(view.left + x, view.low + y);
+    picture.sources[static_cast<std::size_t>(y) * view.width + x] = triangle.sources[at < w.x ? 0 : at < w.x + w.y ? 1 : 2];
 }
 
 /// How finer levels of one picture make those of another, whose pixels are 2^octaves as large.
@@ -259,6 +294,7 @@ void FormPicture::clear(const FormView& of, bool by_the_sun) {
     std::fill_n(samples.begin(), std::min(block, samples.size()), FormSample{});
     for (std::size_t done = block; done < samples.size(); done += block)
         std::copy_n(samples.begin(), std::min(block, samples.size() - done), samples.begin() + static_cast<std::ptrdiff_t>(done));
+    sources.assign(keeps_sources ? samples.size() : 0, {});
 }
 
 namespace {
@@ -331,6 +367,9 @@ void draw_picture(const FormPicture& from, FormPicture& picture) {
             sample.depth = seen.depth;
             sample.owner = seen.owner;
             mix_levels(seen, octaves, sample);
+            if (picture.keeps_sources && from.keeps_sources)
+                picture.sources[static_cast<std::size_t>(y) * b.width + x] =
+                    from.sources[static_cast<std::size_t>(ay * a.width + ax)];
         }
     }
 }

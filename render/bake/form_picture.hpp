@@ -44,12 +44,22 @@ struct FormSample {
     [[nodiscard]] bool covered() const { return depth > nothing; }
 };
 
+/// Of which vertex and material of the model a sample is. Of a triangle's three, each is chosen as often as its share says.
+struct SampleSource {
+    model::Index vertex = model::none;   ///< none: not of the model's own vertices
+    model::Index material_and_side = 0;  ///< twice the material, and 1 where its back is seen
+    [[nodiscard]] model::Index material() const { return material_and_side / 2; }
+    [[nodiscard]] bool turned() const { return material_and_side % 2 == 1; }
+};
+
 /// Row 0 is the lowest.
 struct FormPicture {
     FormView view;
     bool lit = true;                   ///< by sun and sky, where a material is
     model::Index owner = model::none;  ///< the leaf whose form is drawn next; a picture that is drawn brings its owners
     std::vector<FormSample> samples;
+    bool keeps_sources = false;
+    std::vector<SampleSource> sources;  ///< by sample, where they are kept
     void clear(const FormView& of, bool by_the_sun = true);
 };
 

@@ -57,6 +57,7 @@ std::vector<Index> PictureTree::clusters_below(Index root) const {
 void PictureTree::draw(Index index, const View& view) {
     const Node& node = model_.nodes[index];
     FormPicture& full = pictures_[index];
+    full.keeps_sources = view.keeps_sources;
     full.clear(view_of(node.box, view.from, middle_, view.pixels), view.lit);
     for (Index c = node.first_child; c < node.first_child + node.child_count; ++c) {
         const Node& child = model_.nodes[c];

@@ -19,11 +19,13 @@ public:
 
     /// What is done with a cluster's picture, on any thread, once for each cluster. False: stop.
     using Use = std::function<bool(model::Index node, const FormPicture& full)>;
-    /// From where, about how many samples across each cluster (view_of), and whether by the sun.
+    /// From where, about how many samples across each cluster (view_of), whether by the sun, and whether samples keep their
+    /// sources.
     struct View {
         Direction from;
         std::uint32_t pixels = 64;
         bool lit = true;
+        bool keeps_sources = false;
     };
     /// All clusters. False: use() stopped it. One call at a time.
     bool look(const View& view, const ForAll& for_all, const Use& use);

@@ -60,7 +60,8 @@ DrawTables make_tables(const model::Model& model) {
     for (const model::Representation& rep : model.reps) {
         tables.reps.push_back({rep.placement, rep.first_part, rep.part_count, rep.triangles, 0});
         if (rep.kind != model::RepKind::textured_box) continue;
-        for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) tables.parts[p].captured = true;
+        for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p)
+            tables.parts[p].captured = (model.materials[model.parts[p].material].effects & model::effect_lit_picture) == 0;
     }
     for (std::uint32_t n = 0; n < model.nodes.size(); ++n) {
         const model::Node& node = model.nodes[n];

@@ -56,8 +56,18 @@ struct LightText {
 std::string lit_code(const std::string& code, bool needs_sunless) {
     const std::string begin = "    vec3 lit = vec3(1.0), by_sun = vec3(0.0)";
     if (!needs_sunless) return begin + ";\n" + code;
-    return "    vec3 sunless;\n    {\n" + begin + ", sun_light = vec3(0.0);\n" + code + "    sunless = lit;\n    }\n" + begin +
-           ";\n" + code;
+    return "    vec3 sunless;\n    {\n" + begin + ", sun_light = vec3(0.0), picture_sun = vec3(0.0);\n" + code +
+           "    sunless = lit;\n    }\n" + begin + ";\n" + code;
+}
+
+/// What light reads of a vertex, each once.
+std::vector<LightInput> inputs_of(std::span<const EffectModule* const> modules) {
+    std::vector<LightInput> inputs;
+    for (const EffectModule* const module : modules)
+        for (const LightInput& input : module->light_inputs)
+            if (std::none_of(inputs.begin(), inputs.end(), [&](const LightInput& i) { return i.name == input.name; }))
+                inputs.push_back(input);
+    return inputs;
 }
 
 LightText light_text(std::span<const EffectModule* const> modules, bool by_pixel) {
@@ -69,9 +79,9 @@ LightText light_text(std::span<const EffectModule* const> modules, bool by_pixel
         needs_sunless = needs_sunless || module->needs_sunless;
         declarations += module->light_declarations;
         code += module->light_code;
-        for (const LightInput& input : module->light_inputs)
-            text.vertex_declarations += fmt::format("in {} {};\n", input.type, input.name);
     }
+    const std::vector<LightInput> inputs = inputs_of(modules);
+    for (const auto& [type, name] : inputs) text.vertex_declarations += fmt::format("in {} {};\n", type, name);
     if (!has_light) return text;
     text.vertex_declarations += normal_declarations;
     text.vertex_before = normal_code;
@@ -93,13 +103,11 @@ LightText light_text(std::span<const EffectModule* const> modules, bool by_pixel
     // A scope of its own: names of light are not those of modules.
     text.fragment_before = needs_sunless ? "    vec3 in_shadow;\n    {\n" : "    {\n";
     text.fragment_before += pixel_normal_code;
-    for (const EffectModule* const module : modules) {
-        for (const auto& [type, name] : module->light_inputs) {
-            text.vertex_declarations += fmt::format("out {} v_{};\n", type, name);
-            text.vertex_before += fmt::format("    v_{0} = {0};\n", name);
-            text.fragment_declarations += fmt::format("in {} v_{};\n", type, name);
-            text.fragment_before += fmt::format("    {0} {1} = v_{1};\n", type, name);
-        }
+    for (const auto& [type, name] : inputs) {
+        text.vertex_declarations += fmt::format("out {} v_{};\n", type, name);
+        text.vertex_before += fmt::format("    v_{0} = {0};\n", name);
+        text.fragment_declarations += fmt::format("in {} v_{};\n", type, name);
+        text.fragment_before += fmt::format("    {0} {1} = v_{1};\n", type, name);
     }
     if (needs_sunless) text.vertex_before += turn_code;  // for the module's own code there
     text.fragment_declarations += declarations;

@@ -20,11 +20,12 @@ extern const EffectModule water_module;
 extern const EffectModule moving_shadow_module;
 extern const EffectModule light_by_pixel_module;
 extern const EffectModule sky_module;
+extern const EffectModule lit_picture_module;
 
 inline constexpr std::array<const EffectModule*, model::effect_count> registry{
     &texture_module,       &vertex_colour_module,  &sun_module,   &alpha_mask_module, &blend_module,
     &openness_module,      &shadow_module,         &lamps_module, &fog_module,        &water_module,
-    &moving_shadow_module, &light_by_pixel_module, &sky_module};
+    &moving_shadow_module, &light_by_pixel_module, &sky_module,   &lit_picture_module};
 
 /// Writes a uniform of type vec3.
 constexpr void put(const vec3& value, float* to) {

@@ -82,6 +82,7 @@ struct PictureMoment {
     float pixel_rad = 0;    ///< angle of a pixel in the middle
     ShadowPlace shadow = {};
     vec3 box_low{0}, box_high{0};  ///< of a capture: what it is cut to, relative to the eye
+    model::EffectMask hidden = 0;  ///< effects that are left out
     mat4 to_direction{1.0F};       ///< from -1..1, -1..1, 1, 1 of the picture to a direction in the world; for what is behind all
 };
 

@@ -70,6 +70,7 @@ void GlDevice::start_picture(const Pose& pose) {
     state_known_ = false;
     shown_ = {light_, time_s_, pose.position, static_cast<float>(model::pixel_angle(pose, options_.viewport))};
     shown_.light.background *= vec3(options_.sky[0], options_.sky[1], options_.sky[2]);
+    shown_.hidden = off_;
     if ((off_ & model::effect_fog) != 0) shown_.light.fog_density = 0;  // nor has what is behind everything any
     poses_.set_time(time_s_);
     if (!casters_.empty()) draw_shadow_map();

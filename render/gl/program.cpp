@@ -84,6 +84,7 @@ void make_vertex_array(const Api& gl, Program& program, const GeometryBuffers& b
     for (const Attribute& a : attributes) {
         const GLint first = gl.GetAttribLocation(program.id, a.name);
         if (first < 0) continue;
+        if (a.binding == lamp_binding && buffers.lamp_light == 0) continue;  // pictures without lamps read zeros
         for (int i = 0; i < a.locations; ++i) {
             const auto location = static_cast<GLuint>(first + i);
             const auto offset = static_cast<GLuint>(a.offset + static_cast<std::size_t>(i) * 4 * sizeof(float));

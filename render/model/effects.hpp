@@ -22,11 +22,12 @@ enum Effect : std::uint32_t {
     effect_moving_shadow = 1U << 10U,   ///< no sun where something that moves hides it, by a shadow map
     effect_light_by_pixel = 1U << 11U,  ///< its light is worked out for each pixel, not at the vertices
     effect_sky = 1U << 12U,             ///< a sky behind everything
+    effect_lit_picture = 1U << 13U,     ///< a captured picture in the light of the moment
 };
 using EffectMask = std::uint32_t;
 /// Effects of the scene that are drawn behind everything, by programs of their own. No material has one.
 constexpr EffectMask background_effects = effect_sky;
-constexpr int effect_count = 13;
+constexpr int effect_count = 14;
 constexpr int first_effect_count = 5;  ///< of the oldest files that open
 
 /// Whether a scene calls for an effect, and the evidence. One entry for every effect, called for or not.

@@ -266,6 +266,8 @@ Check check_light(const Model& m) {
     if (!m.sun_seen.empty() && m.sun_seen.size() != n) return wrong_light("Shadows are not there for every vertex");
     if (!m.lamp_light.empty() && m.lamp_light.size() != n) return wrong_light("Lamps are not there for every vertex");
     if ((used & effect_shadow) != 0 && m.sun_seen.empty()) return wrong_light("A material has shadows, and no vertex has any");
+    if ((used & effect_lit_picture) != 0 && m.sun_seen.empty())
+        return wrong_light("A picture is lit by the hour, and no vertex has shares of the sun");
     if ((used & effect_lamps) != 0 && m.lamp_light.empty()) return wrong_light("A material has lamps, and no vertex has any");
     const LightFacts& l = m.light;
     if (!(l.day >= 1 && l.day <= 366) || !(std::abs(l.latitude_deg) <= 90)) return wrong_light("The sun's day or place is wrong");

@@ -75,7 +75,7 @@ struct EffectScene {
         constexpr std::array<EffectMask, objects> own{
             effect_texture | lit | effect_shadow | effect_fog | effect_water,
             effect_vertex_colour | lit | effect_fog | effect_light_by_pixel,
-            effect_texture | effect_vertex_colour | effect_sun | effect_shadow,
+            effect_texture | effect_vertex_colour | effect_sun | effect_shadow | effect_lit_picture,
             lit | effect_lamps,
             effect_texture | lit | effect_shadow | effect_lamps | effect_fog | effect_light_by_pixel,
             effect_texture | effect_alpha_mask | lit | effect_lamps,

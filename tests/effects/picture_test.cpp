@@ -50,6 +50,7 @@ constexpr std::array<Tolerance, std::popcount(all_bits)> tolerances{{
     {model::effect_water, 1.5},
     {model::effect_moving_shadow, 1.5},  // as the sun; without a map it is no shadow (moving_shadow_test.cpp has one)
     {model::effect_light_by_pixel, 1.5},
+    {model::effect_lit_picture, 4},  // as lamps; it multiplies errors of texels, too
 }};
 /// Pixels at edges that may differ. Corners are rounded to a part of a pixel, and a driver may take one mip level for 2 x 2
 /// pixels.
@@ -233,6 +234,8 @@ TEST_P(SwitchedPictures, are_the_references_without_what_is_hidden) {
         }
         reference::Light light = evening();
         if ((hidden & model::effect_sun) != 0) light.pictures = dvec3(1);  // what was captured is not darkened either
+        light.sun_on_pictures = (hidden & model::effect_sun) == 0;
+        light.lamps_on_pictures = (hidden & model::effect_lamps) == 0;
         device_->draws.plays();
         device_->hide_effects(hidden);
         std::vector<Difference> all;

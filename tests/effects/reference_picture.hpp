@@ -44,11 +44,17 @@ struct ScreenCorner {
 };
 
 inline Surface operator*(double share, const Surface& s) {
-    return {share * s.normal, share * s.hidden, share * s.sun, share * s.lamps_before, share * s.lamps_behind};
+    return {share * s.normal,       share * s.hidden,      share * s.sun,          share * s.lamps_before,
+            share * s.lamps_behind, share * s.picture_sun, share * s.picture_lamps};
 }
 inline Surface operator+(const Surface& a, const Surface& b) {
-    return {a.normal + b.normal, a.hidden + b.hidden, a.sun + b.sun, a.lamps_before + b.lamps_before,
-            a.lamps_behind + b.lamps_behind};
+    return {a.normal + b.normal,
+            a.hidden + b.hidden,
+            a.sun + b.sun,
+            a.lamps_before + b.lamps_before,
+            a.lamps_behind + b.lamps_behind,
+            a.picture_sun + b.picture_sun,
+            a.picture_lamps + b.picture_lamps};
 }
 inline Corner operator*(double share, const Corner& c) {
     return {share * c.from_eye, share * c.colour, share * c.uv, share * c.surface};
@@ -210,10 +216,10 @@ inline Picture draw(const View& view) {
         if (node.child_count != 0) continue;
         const model::Representation& rep = view.model.reps[node.first_rep + node.rep_count - 1];
         const double distance_m = glm::length(0.5 * (node.box.min + node.box.max) - view.pose.position);
-        const bool captured = rep.kind == model::RepKind::textured_box;
         for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
-            const bool last = has(view.model.materials[view.model.parts[p].material], model::effect_blend);
-            (last ? blended : opaque).push_back({distance_m, n, p, rep.placement, captured});
+            const model::Material& material = view.model.materials[view.model.parts[p].material];
+            const bool captured = rep.kind == model::RepKind::textured_box && !has(material, model::effect_lit_picture);
+            (has(material, model::effect_blend) ? blended : opaque).push_back({distance_m, n, p, rep.placement, captured});
         }
     }
     std::sort(blended.begin(), blended.end(), [](const DrawnPart& a, const DrawnPart& b) {

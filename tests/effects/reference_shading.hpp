@@ -18,14 +18,15 @@ namespace surefoot::reference {
 struct Light {
     dvec3 towards_sun{0, 1, 0};
     dvec3 sun{0.56, 0.53, 0.47}, ground{0.34, 0.32, 0.30}, sky{0.52, 0.56, 0.62};
-    std::uint32_t moment = 0;  ///< it is between this share of the sun and the next
-    double between = 0;        ///< 0: at this one, 1: at the next
-    double lamps = 0;          ///< light of a lamp's full byte
-    double rooms = 1;          ///< of the light of a room that sees no sky
-    double fog_density = 0;    ///< at a distance of 1 / density, half is left
-    dvec3 background{1.0};     ///< multiplies the sky, which is the fog's colour too
-    dvec3 pictures{1.0};       ///< multiplies what was captured by the light of the bake
-    double time_s = 0;         ///< since waves began
+    std::uint32_t moment = 0;                               ///< it is between this share of the sun and the next
+    double between = 0;                                     ///< 0: at this one, 1: at the next
+    double lamps = 0;                                       ///< light of a lamp's full byte
+    double rooms = 1;                                       ///< of the light of a room that sees no sky
+    double fog_density = 0;                                 ///< at a distance of 1 / density, half is left
+    dvec3 background{1.0};                                  ///< multiplies the sky, which is the fog's colour too
+    dvec3 pictures{1.0};                                    ///< multiplies what was captured by the light of the bake
+    bool sun_on_pictures = true, lamps_on_pictures = true;  ///< of lit pictures; without the sun they have a light of 1
+    double time_s = 0;                                      ///< since waves began
 };
 
 /// As it is where nobody sets another: lamps are off. At the visibility, one part in twenty comes through the fog.
@@ -52,6 +53,8 @@ struct Surface {
     dvec4 hidden{0.0};                           ///< shares: sky before and behind it, room before and behind it
     double sun = 0;                              ///< share of the sun that shines on it
     dvec3 lamps_before{0.0}, lamps_behind{0.0};  ///< roots of the light of all lamps
+    double picture_sun = 0;                      ///< of a lit picture: half of the sun's light on it
+    dvec3 picture_lamps{0.0};                    ///< the root of that of lamps
 };
 
 /// What a corner of a triangle hands to its pixels. All of it varies evenly in space, not on the picture.
@@ -68,6 +71,7 @@ struct LitSide {
     double sky = 1, room = 1;  ///< shares that are not hidden
     double sun = 1;            ///< share of the sun that shines on it
     dvec3 lamps{0.0};          ///< light of all lamps
+    dvec3 picture{1.0};        ///< all light on a lit picture
 };
 
 /// A pixel of a triangle, before its colour is known.
@@ -97,6 +101,7 @@ inline dvec3 light_at_vertex(const View& view, const model::Material& material, 
         light *= 0.6 + 0.4 * side.room;
     }
     if (has(material, model::effect_lamps)) light += side.lamps;  // they are near: neither sky nor corners change them
+    if (has(material, model::effect_lit_picture)) light *= side.picture;
     return light;
 }
 
@@ -126,6 +131,10 @@ inline Surface surface_at(const View& view, const model::Material& material, con
     surface.normal = glm::normalize(glm::transpose(glm::inverse(linear)) * stored);
     surface.hidden = dvec4(v.hidden[0], v.hidden[1], v.hidden[2], v.hidden[3]) / 255.0;
     surface.sun = has(material, model::effect_shadow) ? sun_at_vertex(view, vertex) : 1.0;
+    if (has(material, model::effect_lit_picture)) {
+        surface.picture_sun = sun_at_vertex(view, vertex);
+        surface.picture_lamps = root_of_lamps(view, vertex, false);
+    }
     if (!has(material, model::effect_lamps)) return surface;
     surface.lamps_before = root_of_lamps(view, vertex, false);
     surface.lamps_behind = root_of_lamps(view, vertex, true);
@@ -135,6 +144,17 @@ inline Surface surface_at(const View& view, const model::Material& material, con
 /// By how much a point faces away from the eye: -1 straight to it, 1 straight away.
 inline double facing_away(const Surface& surface, const dvec3& from_eye) {
     return glm::dot(glm::normalize(surface.normal), glm::normalize(from_eye));
+}
+
+/// Of a picture: twice the sum of what the sun, the sky, the ground and rooms give by its shares, and lamps.
+inline dvec3 light_on_picture(const Light& of, const Surface& surface) {
+    const dvec3 sun = of.sun_on_pictures ? surface.picture_sun * of.sun : dvec3(0);
+    const dvec3 sky = of.sun_on_pictures ? of.sky : dvec3(1), ground = of.sun_on_pictures ? of.ground : dvec3(1);
+    const double night =
+        std::clamp((0.56 - of.sky.g) / (0.56 - 0.12), 0.0, 1.0);  // rooms count less then: one sees windows alone
+    const dvec3 rooms = (1 - 0.75 * night) * of.rooms * dvec3(0.98, 0.95, 0.91);
+    const dvec3 lamps = (of.lamps_on_pictures ? 0.7 * of.lamps : 0) * surface.picture_lamps * surface.picture_lamps;
+    return 2.0 * (sun + surface.hidden.x * sky + surface.hidden.y * ground + surface.hidden.z * rooms) + lamps;
 }
 
 /// The lit side of a vertex, or of a point between vertices. A two-sided surface is lit on the side that the eye sees.
@@ -147,6 +167,7 @@ inline LitSide lit_side(const View& view, const model::Material& material, const
     side.sun = surface.sun;
     const dvec3& root = behind ? surface.lamps_behind : surface.lamps_before;
     side.lamps = view.light.lamps * root * root;
+    if (has(material, model::effect_lit_picture)) side.picture = light_on_picture(view.light, surface);
     return side;
 }
 
