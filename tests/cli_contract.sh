@@ -223,13 +223,23 @@ grep -q '^uncalibrated' out || complain "the figures are not marked as uncalibra
 grep -q 'not fully real-time: no cost' out err && complain "a missing cost table is no lack of real time"
 expect 1 '^surefoot: --strict.*no cost table.*calibrate' walk f.walk --strict --frames 5
 
-# The image cache, counted.
-json cache-study flat --frames 6 --birds-eye sheet.png
+# The image cache, counted, and drawn where a device can.
+json cache-study flat --frames 6 --birds-eye sheet.png --backend null
 grep -q '"boxes": 341' out && grep -q '"not_replaceable"' out || complain "cache-study lacks its counts: $(head -c 300 out)"
 grep -q '"ms": null' out && grep -q '"ms_reason": "Nothing is drawn' out || complain "cache-study does not say why it has no times"
 grep -q '"ms": [^n]' out && complain "cache-study has times of what it does not draw"
 grep -q '"walked_m": [1-9]' out && grep -q '"max_refreshes_of_a_frame"' out || complain "cache-study lacks its way: $(head -c 300 out)"
-json cache-study flat --frames 1
+json cache-study room --frames 2 --pictures views
+if grep -q '"ms_reason": null' out; then
+  grep -q '"ms": [0-9]' out && grep -q '"full_ms": [0-9]' out && grep -q '"a_picture_an_object"' out || complain "a drawn cache-study lacks times: $(head -c 300 out)"
+  [ "$(ls views | grep -c -E '^room-0000[01]-(cache|full|difference|by-object).png$')" -eq 8 ] || complain "cache-study lacks pictures: $(ls views)"
+else
+  grep -q '"ms": [0-9]' out && complain "cache-study has times of what it does not draw"
+fi
+expect 1 'folder cannot be made' cache-study flat --frames 2 --pictures sheet.png/folder
+expect 2 '--pictures.*draws nothing' cache-study flat --frames 2 --pictures views --backend null
+refuse 'vulkan' cache-study flat --backend vulkan
+json cache-study flat --frames 1 --backend null
 grep -q '"shape_as_published": null' out || complain "cache-study judges one frame"
 head -c 4 sheet.png | grep -q PNG || complain "the bird's-eye view is no picture"
 refuse 'garden.*flat, forest, zoom, room' cache-study garden

@@ -16,6 +16,8 @@ namespace {
 constexpr GLint box_planes = 6;
 /// Pictures that a layer holds at 64 texels, and corners of one that its square does not cut.
 constexpr std::uint32_t pictures_a_layer = 16, usual_vertices = 18;
+/// In a frame a picture may be drawn into another one, and shown.
+constexpr std::uint32_t draws_a_picture = 2;
 constexpr std::uint16_t no_program = 0xffff;
 
 constexpr const char* picture_vertex = R"(#version 430 core
@@ -42,6 +44,16 @@ void main() { pixel = texture(pictures, vec3(v_at, v_layer)); }
 void write_low(const PictureMoment& moment, float* to) { std::copy_n(&moment.box_low.x, 3, to); }
 void write_high(const PictureMoment& moment, float* to) { std::copy_n(&moment.box_high.x, 3, to); }
 
+/// A metre before the eye of Pose{}.
+CachePicture picture_before(std::uint16_t texels) {
+    CachePicture picture;
+    picture.place.texels = texels;
+    picture.low_m = dvec2(-1);
+    picture.side_m = 2;
+    picture.box = {dvec3(-0.5, -0.5, -2), dvec3(0.5, 0.5, -1)};
+    return picture;
+}
+
 Error no_pictures(std::string what) {
     return {"image cache", std::move(what), "Set fewer picture_layers, or 0", ErrorKind::unsupported};
 }
@@ -61,21 +73,33 @@ void make_layers(const Api& gl, CachePictures& pictures, std::uint32_t layers) {
     gl.GenRenderbuffers(1, &pictures.depth);
     gl.BindRenderbuffer(GL_RENDERBUFFER, pictures.depth);
     gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, side, side);
+    gl.GenRenderbuffers(1, &pictures.scratch);
+    gl.BindRenderbuffer(GL_RENDERBUFFER, pictures.scratch);
+    gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, side, side);
 }
 
-/// False: a layer cannot be drawn into. Each is cleared, so that its memory is there.
+/// False: the bound framebuffer cannot be drawn into. It is cleared, so that its memory is there.
+bool is_drawable(const Api& gl, const CachePictures& pictures) {
+    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, pictures.depth);
+    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) return false;
+    gl.ClearColor(0, 0, 0, 0);
+    gl.Clear(GL_COLOR_BUFFER_BIT);
+    return true;
+}
+
+/// False: a layer cannot be drawn into.
 bool make_framebuffers(const Api& gl, CachePictures& pictures, std::uint32_t layers) {
     for (std::uint32_t layer = 0; layer < layers; ++layer) {
         GLuint& framebuffer = pictures.framebuffers.emplace_back();
         gl.GenFramebuffers(1, &framebuffer);
         gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
         gl.FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, pictures.texture, 0, static_cast<GLint>(layer));
-        gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, pictures.depth);
-        if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) return false;
-        gl.ClearColor(0, 0, 0, 0);
-        gl.Clear(GL_COLOR_BUFFER_BIT);
+        if (!is_drawable(gl, pictures)) return false;
     }
-    return true;
+    gl.GenFramebuffers(1, &pictures.scratch_framebuffer);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, pictures.scratch_framebuffer);
+    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, pictures.scratch);
+    return is_drawable(gl, pictures);
 }
 
 Result<void> make_drawing(const Api& gl, CachePictures& pictures, std::uint32_t layers) {
@@ -85,7 +109,7 @@ Result<void> make_drawing(const Api& gl, CachePictures& pictures, std::uint32_t 
     pictures.view_projection = gl.GetUniformLocation(pictures.program, "view_projection");
     gl.UseProgram(pictures.program);
     gl.Uniform1i(gl.GetUniformLocation(pictures.program, "pictures"), picture_unit);
-    const std::size_t count = std::size_t{layers} * pictures_a_layer * usual_vertices + max_picture_vertices;
+    const std::size_t count = std::size_t{layers} * pictures_a_layer * draws_a_picture * usual_vertices + max_picture_vertices;
     void* memory = make_mapped_buffer(gl, GL_ARRAY_BUFFER, pictures.vertex_buffer, count * sizeof(PictureVertex));
     if (memory == nullptr) return no_pictures("The device cannot map the corners of pictures");
     pictures.vertices = {static_cast<PictureVertex*>(memory), count};
@@ -123,7 +147,9 @@ Result<CachePictures> make_cache_pictures(const Api& gl, std::uint32_t layers) {
 void free_cache_pictures(const Api& gl, CachePictures& pictures) {
     if (!pictures.framebuffers.empty())
         gl.DeleteFramebuffers(static_cast<GLsizei>(pictures.framebuffers.size()), pictures.framebuffers.data());
+    gl.DeleteFramebuffers(1, &pictures.scratch_framebuffer);
     gl.DeleteRenderbuffers(1, &pictures.depth);
+    gl.DeleteRenderbuffers(1, &pictures.scratch);
     gl.DeleteTextures(1, &pictures.texture);
     gl.DeleteProgram(pictures.program);
     gl.DeleteVertexArrays(1, &pictures.vertex_array);
@@ -197,9 +223,10 @@ bool GlDevice::has_capture_program(const draw::DrawPart& part) const {
     return capture_programs_[variant_ * tables_.masks.size() + part.program] != no_program;
 }
 
-bool GlDevice::capture_picture(const CachePicture& picture, std::span<const DrawItem> items) {
+bool GlDevice::capture_picture(const CachePicture& picture, std::span<const DrawItem> items,
+                               std::span<const CachePicture> back_to_front) {
     if (lost_ || capture_count_ == captures_.size() || !lies_within(picture.place, picture_layers())) return false;
-    captures_[capture_count_++] = {picture, items};
+    captures_[capture_count_++] = {picture, items, back_to_front};
     return true;
 }
 
@@ -212,7 +239,7 @@ void GlDevice::draw_captures() {
     const PictureMoment shown = shown_;
     const FrameStats stats = stats_;
     begin_captures();
-    for (std::size_t i = 0; i < count; ++i) draw_capture(captures_[i].picture, captures_[i].items);
+    for (std::size_t i = 0; i < count; ++i) draw_capture(captures_[i]);
     end_captures();
     pose_ = pose;
     view_projection_ = view_projection;
@@ -225,18 +252,26 @@ void GlDevice::draw_captures() {
 void GlDevice::begin_captures() {
     drawing_ = Drawing::capture;
     gl_.Enable(GL_SCISSOR_TEST);
-    for (GLint plane = 0; plane < box_planes; ++plane) gl_.Enable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(plane));
+    cut_by_box(true);
 }
 
 void GlDevice::end_captures() {
-    for (GLint plane = 0; plane < box_planes; ++plane) gl_.Disable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(plane));
+    cut_by_box(false);
     gl_.Disable(GL_SCISSOR_TEST);
     drawing_ = Drawing::picture;
     ++frame_number_;  // programs must read the moment anew
     state_known_ = false;
 }
 
-void GlDevice::begin_capture(const CachePicture& picture) {
+/// Programs of captures write the distances. The one that draws pictures does not.
+void GlDevice::cut_by_box(bool on) {
+    for (GLint plane = 0; plane < box_planes; ++plane) {
+        const GLenum distance = GL_CLIP_DISTANCE0 + static_cast<GLenum>(plane);
+        on ? gl_.Enable(distance) : gl_.Disable(distance);
+    }
+}
+
+void GlDevice::begin_capture(const CachePicture& picture, GLuint framebuffer) {
     ++frame_number_;
     state_known_ = false;
     pose_.position = shown_.eye = picture.eye;
@@ -246,7 +281,7 @@ void GlDevice::begin_capture(const CachePicture& picture) {
     shown_.box_low = vec3(picture.box.min - picture.eye);
     shown_.box_high = vec3(picture.box.max - picture.eye);
     constexpr auto side = static_cast<GLsizei>(picture_layer_px);
-    draw_into({pictures_.framebuffers[picture.place.layer], 0, side, side});
+    draw_into({framebuffer, 0, side, side});
     gl_.Viewport(picture.place.column, picture.place.row, picture.place.texels, picture.place.texels);
     gl_.Scissor(picture.place.column, picture.place.row, picture.place.texels, picture.place.texels);
     gl_.ClearColor(0, 0, 0, 0);
@@ -254,9 +289,25 @@ void GlDevice::begin_capture(const CachePicture& picture) {
     gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void GlDevice::draw_capture(const CachePicture& picture, std::span<const DrawItem> items) {
-    begin_capture(picture);
-    draw_parts(items, Parts::opaque);
+void GlDevice::draw_capture(const WaitingCapture& capture) {
+    const PicturePlace& place = capture.picture.place;
+    begin_capture(capture.picture,
+                  capture.pictures.empty() ? pictures_.framebuffers[place.layer] : pictures_.scratch_framebuffer);
+    draw_parts(capture.items, Parts::opaque);
+    if (!capture.pictures.empty()) draw_pictures_into(place, capture.pictures);
+}
+
+/// GL leaves it undefined what a draw sees of a texture that it is drawn into, also in other layers of it. So what is made of
+/// pictures is drawn beside the layers, and copied. Faces of boxes that are grown may begin before the depth of their parent.
+void GlDevice::draw_pictures_into(const PicturePlace& place, std::span<const CachePicture> back_to_front) {
+    cut_by_box(false);
+    gl_.Enable(GL_DEPTH_CLAMP);
+    draw_pictures(back_to_front);
+    gl_.Disable(GL_DEPTH_CLAMP);
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, pictures_.framebuffers[place.layer]);
+    const GLint left = place.column, low = place.row, right = left + place.texels, high = low + place.texels;
+    gl_.BlitFramebuffer(left, low, right, high, left, low, right, high, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    cut_by_box(true);
 }
 
 void GlDevice::draw_pictures(std::span<const CachePicture> back_to_front) {
@@ -300,23 +351,21 @@ void GlDevice::warm_up_captures(std::span<const Pending> kinds) {
     CachePicture picture;
     for (const std::uint16_t texels : {std::uint16_t{picture_layer_px}, std::uint16_t{picture_layer_px / 4}}) {
         picture.place.texels = texels;  // drivers clear a whole layer and a part of one by other ways
-        begin_capture(picture);
+        begin_capture(picture, pictures_.framebuffers.front());
         for (const Pending& pending : kinds) {
             const draw::DrawPart& part = tables_.parts[pending.part];
             if (!is_blended(part) && has_capture_program(part)) warm_up_part(pending);
         }
+        const CachePicture of_pictures = picture_before(picture_layer_px), inside = picture_before(texels);
+        draw_capture({of_pictures, {}, {&inside, 1}});
     }
     end_captures();
 }
 
-/// A picture a metre before the eye of Pose{}, into every target.
+/// Into every target.
 void GlDevice::warm_up_pictures() {
     if (pictures_.framebuffers.empty()) return;
-    CachePicture picture;
-    picture.place.texels = picture_layer_px;
-    picture.low_m = dvec2(-1);
-    picture.side_m = 2;
-    picture.box = {dvec3(-0.5, -0.5, -2), dvec3(0.5, 0.5, -1)};
+    const CachePicture picture = picture_before(picture_layer_px);
     draw_pictures({&picture, 1});
 }
 

@@ -16,7 +16,8 @@ namespace surefoot::gl {
 /// Objects of the pictures, made by load(). Without framebuffers there is no picture.
 struct CachePictures {
     GLuint texture = 0, depth = 0;
-    std::vector<GLuint> framebuffers;  ///< one a layer; they share the depth buffer
+    std::vector<GLuint> framebuffers;             ///< one a layer; they share the depth buffer
+    GLuint scratch = 0, scratch_framebuffer = 0;  ///< of a layer's size: what is made of pictures is drawn here, then copied
     GLuint program = 0, vertex_array = 0, vertex_buffer = 0;
     GLint view_projection = -1;         ///< uniform location
     std::span<PictureVertex> vertices;  ///< mapped: written without a GL call

@@ -265,11 +265,16 @@ public:
     /// Why there are fewer layers than DeviceOptions::picture_layers; else empty.
     [[nodiscard]] virtual std::string picture_reason() const { return {}; }
     /// The next begin_frame() or begin_rest() draws these items into a square of a layer, with its light, time and effects, but
-    /// without moving shadows. They must live until then. Only parts of leaves that are not blended are drawn.
+    /// without moving shadows. Only parts of leaves that are not blended are drawn. Then pictures are drawn over them, in this
+    /// order: back to front, seen from the eye of `picture`. They show what their squares have by then. All must live until then.
     /// False: nothing will be drawn. It has no layers, the place is outside of them, or max_captures already wait.
-    virtual bool capture_picture(const CachePicture& picture, std::span<const DrawItem> items) REQUIRES(draws) {
-        static_cast<void>(picture), static_cast<void>(items);
+    virtual bool capture_picture(const CachePicture& picture, std::span<const DrawItem> items,
+                                 std::span<const CachePicture> back_to_front) REQUIRES(draws) {
+        static_cast<void>(picture), static_cast<void>(items), static_cast<void>(back_to_front);
         return false;
+    }
+    bool capture_picture(const CachePicture& picture, std::span<const DrawItem> items) REQUIRES(draws) {
+        return capture_picture(picture, items, {});
     }
     /// Draws pictures into the frame in this order: back to front. After all draw(), and before end_items(), in the current
     /// slice. Pictures that cannot be seen from the eye of the frame are left out: its box holds it, or their plane is behind it.

@@ -47,7 +47,9 @@ public:
         return static_cast<std::uint32_t>(pictures_.framebuffers.size());
     }
     [[nodiscard]] std::string picture_reason() const override { return picture_reason_; }
-    bool capture_picture(const CachePicture& picture, std::span<const DrawItem> items) override REQUIRES(draws);
+    using Device::capture_picture;
+    bool capture_picture(const CachePicture& picture, std::span<const DrawItem> items,
+                         std::span<const CachePicture> back_to_front) override REQUIRES(draws);
     void draw_pictures(std::span<const CachePicture> back_to_front) override REQUIRES(draws);
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
@@ -97,6 +99,7 @@ private:
     struct WaitingCapture {
         CachePicture picture;
         std::span<const DrawItem> items;
+        std::span<const CachePicture> pictures;
     };
 
     GlDevice(std::unique_ptr<Context> context, const DeviceOptions& options);
@@ -136,8 +139,10 @@ private:
     void draw_captures() REQUIRES(draws);
     void begin_captures() REQUIRES(draws);
     void end_captures() REQUIRES(draws);
-    void begin_capture(const CachePicture& picture) REQUIRES(draws);
-    void draw_capture(const CachePicture& picture, std::span<const DrawItem> items) REQUIRES(draws);
+    void cut_by_box(bool on) REQUIRES(draws);
+    void begin_capture(const CachePicture& picture, GLuint framebuffer) REQUIRES(draws);
+    void draw_capture(const WaitingCapture& capture) REQUIRES(draws);
+    void draw_pictures_into(const PicturePlace& place, std::span<const CachePicture> back_to_front) REQUIRES(draws);
     void issue_pictures(std::size_t first) REQUIRES(draws);
     void warm_up_captures(std::span<const Pending> kinds) REQUIRES(draws);
     void warm_up_pictures() REQUIRES(draws);

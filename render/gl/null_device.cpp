@@ -77,7 +77,9 @@ public:
         if (stats_.resolution < 1) frame_us_ += null_.cost_scale * factor_ * null_.enlarge_us;
     }
     [[nodiscard]] std::uint32_t picture_layers() const override { return model_ != nullptr ? options_.picture_layers : 0; }
-    bool capture_picture(const CachePicture& picture, std::span<const DrawItem>) override REQUIRES(draws) {
+    using Device::capture_picture;
+    bool capture_picture(const CachePicture& picture, std::span<const DrawItem>, std::span<const CachePicture>) override
+        REQUIRES(draws) {
         if (captures_ == max_captures || !lies_within(picture.place, picture_layers())) return false;
         ++captures_;
         return true;

@@ -233,5 +233,92 @@ TEST(CachePictures, take_nothing_from_the_squares_beside_theirs) {
     }
 }
 
+/// The children of a box that is halved along x, seen back to front from an eye beyond the upper half.
+std::array<gl::CachePicture, 2> halves_from(const dvec3& eye, std::array<gl::PicturePlace, 2> places, double grown_by_m) {
+    Box low = cube_of_pictures, high = cube_of_pictures;
+    low.max.x = high.min.x = 0;
+    return {picture_from(grown(low, grown_by_m), eye, places[0]), picture_from(grown(high, grown_by_m), eye, places[1])};
+}
+
+/// A board of squares of full colours, some of them in both halves, and two before it: nothing is as narrow as a pixel.
+PictureScene full_colours() {
+    std::vector<ColouredSquare> all;
+    for (int i = 0; i < 15; ++i) {
+        const int colour = i % 7 + 1;
+        all.push_back(
+            {vec3(colour & 1, colour / 2 & 1, colour / 4), dvec3(-0.8 + 0.4 * (i % 5), -0.5 + 0.5 * (i / 5), -6.2), 0.2F});
+    }
+    all.push_back({vec3(1, 0, 0), dvec3(-0.5, 0.1, -5.7), 0.15F});
+    all.push_back({vec3(0, 1, 1), dvec3(0.3, -0.3, -5.5), 0.2F});
+    return squares(all);
+}
+
+TEST(CachePictures, made_of_pictures_are_what_is_made_of_triangles_in_any_layer) {
+    const PictureScene scene = full_colours();
+    for (const auto kind : {gl::BackendKind::egl, gl::BackendKind::osmesa}) {
+        auto options = with_layers(128, 128, 2);
+        options.kind = kind;
+        const auto device = open_with_pictures(scene, options);
+        if (!device) continue;
+        const dvec3 eye(1.2, 0.4, 0);
+        for (const std::uint16_t layer : {std::uint16_t{0}, std::uint16_t{1}}) {
+            const auto halves = halves_from(eye, {{{0, 0, 0, 128}, {0, 128, 0, 128}}}, 0.06);
+            gl::CachePicture whole = picture_from(grown(cube_of_pictures, 0.06), eye, {layer, 0, 128, 128});
+            const Pose pose = pose_along(eye, whole, 2 * std::atan(0.5 * whole.side_m / whole.plane_m));
+            capture(*device, whole, scene.items);
+            const gl::PixelImage captured = in_two_colours(frame_of(*device, pose, {}, {&whole, 1}));
+            const gl::PixelImage direct = frame_of(*device, pose, scene.items, {});
+            EXPECT_GT(lit_pixels(direct), 1500);
+            for (const gl::CachePicture& half : halves) capture(*device, half, scene.items);
+            capture(*device, whole, {}, halves);
+            const gl::PixelImage combined = in_two_colours(frame_of(*device, pose, {}, {&whole, 1}));
+            EXPECT_EQ(pixels_beyond(captured, direct, 1, 0), 0);
+            EXPECT_EQ(pixels_beyond(combined, direct, 1, 0) + pixels_beyond(direct, combined, 1, 0), 0)
+                << "an edge moves by half a texel each time";
+            const gl::PixelImage shown = in_two_colours(frame_of(*device, pose, {}, halves));
+            EXPECT_EQ(pixels_beyond(shown, direct, 1, 0), 0) << "the children are as they were";
+            capture(*device, whole, {}, {halves.data(), 1});
+            EXPECT_LT(lit_pixels(frame_of(*device, pose, {}, {&whole, 1})), lit_pixels(combined)) << "one half of it";
+        }
+    }
+}
+
+TEST(CachePictures, made_of_pictures_hold_the_latest_of_each_back_to_front) {
+    // One of two squares hides the other: red before green, as the eye is beyond the upper half.
+    const PictureScene scene =
+        squares({{vec3(1, 0, 0), dvec3(0.5, 0, -5.5), 0.3F}, {vec3(0, 1, 0), dvec3(-0.5, 0.25, -6.5), 0.4F}});
+    const auto device = open_with_pictures(scene, with_layers(96, 96));
+    if (!device) GTEST_SKIP() << "no EGL";
+    const dvec3 eye(2.5, 0, -3.5);
+    const std::array<gl::PicturePlace, 2> places{{{0, 0, 0, 128}, {0, 128, 0, 128}}};
+    const auto halves = halves_from(eye, places, 0.01);
+    gl::CachePicture whole = picture_from(grown(cube_of_pictures, 0.01), eye, {0, 0, 0, 128});
+    const Pose pose = pose_along(eye, whole, 0.6);
+    const gl::PixelImage direct = frame_of(*device, pose, scene.items, {});
+    // All wait for one frame; the whole takes the place of a half that it is made of.
+    device->draws.plays();
+    for (const gl::CachePicture& half : halves) EXPECT_TRUE(device->capture_picture(half, scene.items));
+    EXPECT_TRUE(device->capture_picture(whole, {}, halves));
+    const gl::PixelImage combined = in_two_colours(frame_of(*device, pose, {}, {&whole, 1}));
+    EXPECT_EQ(device->stats().captures, 3U);
+    EXPECT_EQ(pixels_beyond(combined, direct, 1, 0) + pixels_beyond(direct, combined, 1, 0), 0);
+    const auto count_of = [](const gl::PixelImage& image, std::size_t channel) {
+        int count = 0;
+        for (std::size_t i = 0; i < image.rgba.size(); i += 4) count += image.rgba[i + channel] > 128 ? 1 : 0;
+        return count;
+    };
+    ASSERT_GT(count_of(direct, 0), 300);
+    ASSERT_GT(count_of(direct, 1), 30);
+    for (const gl::CachePicture& half : halves) capture(*device, half, scene.items);
+    const std::array turned{halves[1], halves[0]};
+    whole.place = {0, 0, 128, 128};
+    capture(*device, whole, {}, turned);
+    const gl::PixelImage wrong = in_two_colours(frame_of(*device, pose, {}, {&whole, 1}));
+    EXPECT_GT(pixels_beyond(wrong, direct, 1, 0), 30) << "front to back is wrong";
+    capture(*device, whole, {scene.items.data(), 1}, {halves.data(), 1});
+    const gl::PixelImage both = in_two_colours(frame_of(*device, pose, {}, {&whole, 1}));
+    EXPECT_EQ(pixels_beyond(both, direct, 1, 0), 0) << "pictures behind triangles are hidden";
+}
+
 }  // namespace
 }  // namespace surefoot::test

@@ -107,9 +107,10 @@ inline gl::PixelImage frame_of(gl::Device& device, const Pose& pose, std::span<c
     return image.ok() ? *image : gl::PixelImage{};
 }
 
-inline void capture(gl::Device& device, const gl::CachePicture& picture, std::span<const gl::DrawItem> items) {
+inline void capture(gl::Device& device, const gl::CachePicture& picture, std::span<const gl::DrawItem> items,
+                    std::span<const gl::CachePicture> pictures = {}) {
     device.draws.plays();
-    EXPECT_TRUE(device.capture_picture(picture, items));
+    EXPECT_TRUE(device.capture_picture(picture, items, pictures));
     device.begin_frame(Pose{});
     EXPECT_EQ(device.stats().captures, 1U);
     EXPECT_EQ(device.stats().items, 0U);
@@ -138,6 +139,31 @@ inline int misplaced_pixels(const gl::PixelImage& image, const gl::PixelImage& o
                 for (int u = std::max(0, x - radius); u <= std::min(w - 1, x + radius) && !found; ++u)
                     found = difference(pixel_of(image, x, y), pixel_of(other, u, v)) <= within;
             count += found ? 0 : 1;
+        }
+    }
+    return count;
+}
+
+/// Pixels of `image` with a channel that is out of what `other` has within so many pixels, by over 1/255 * `within`. So mixed
+/// colours of an edge are right beside it, and a surface wider than the window must have its own colour.
+inline int pixels_beyond(const gl::PixelImage& image, const gl::PixelImage& other, int radius, int within) {
+    const int w = static_cast<int>(image.width), h = static_cast<int>(image.height);
+    int count = 0;
+    for (int y = 0; y < h; ++y) {
+        for (int x = 0; x < w; ++x) {
+            bool beyond = false;
+            for (int c = 0; c < 3; ++c) {
+                int low = 255, high = 0;
+                for (int v = std::max(0, y - radius); v <= std::min(h - 1, y + radius); ++v) {
+                    for (int u = std::max(0, x - radius); u <= std::min(w - 1, x + radius); ++u) {
+                        low = std::min(low, int{pixel_of(other, u, v)[c]});
+                        high = std::max(high, int{pixel_of(other, u, v)[c]});
+                    }
+                }
+                const int value = pixel_of(image, x, y)[c];
+                beyond = beyond || value < low - within || value > high + within;
+            }
+            count += beyond ? 1 : 0;
         }
     }
     return count;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "tools/cache_study/study_scenes.hpp"
 #include "tools/cache_study/traced_points.hpp"
@@ -11,9 +13,41 @@ namespace surefoot::cache_study {
 
 namespace {
 
+/// Frames with a picture: those in the middle of five equal parts of the walk, or all of fewer.
+std::size_t view_at(std::size_t view, std::size_t frames) {
+    return (2 * view + 1) * frames / (2 * std::min<std::size_t>(views_a_study, frames));
+}
+
+/// What else a walk makes than counts.
+struct WalkOutputs {
+    ViewSheet* sheet = nullptr;
+    StudyDevice* device = nullptr;
+    std::vector<StudyView>* views = nullptr;
+};
+
+/// The plan and the frame by it, then the same frame in full.
+FrameTimes times_of(StudyDevice& device, const cache::CachePlan& plan, const DrawTimes& planned, const cache::CacheView& view,
+                    StudyView* pictures) {
+    const Pose pose = device.pose_at(view.eye);
+    const auto keep = [&](gl::PixelImage StudyView::*image) {
+        if (pictures == nullptr) return;
+        auto pixels = device.read_pixels();
+        if (pixels) pictures->*image = std::move(*pixels);
+    };
+    FrameTimes times;
+    const DrawnFrame drawn = device.draw_cached(plan, pose, view.pixels);
+    keep(&StudyView::cached);
+    times.cached = {planned.ms + drawn.times.ms, planned.cpu_ms + drawn.times.cpu_ms};
+    times.pictures = drawn.pictures;
+    times.leaves = drawn.leaves;
+    times.full = device.draw_full(pose);
+    keep(&StudyView::full);
+    return times;
+}
+
 /// One walk by one set of rules. Stops early where the user wants it.
 std::vector<StudyFrame> walk_by(const StudyScene& scene, const cache::PixelAngles& pixels, const cache::CacheOptions& options,
-                                const Progress& progress, std::string_view stage, ViewSheet* sheet) {
+                                const Progress& progress, std::string_view stage, const WalkOutputs& outputs) {
     std::vector<StudyFrame> frames;
     cache::CacheState state = cache::empty_state(scene.tree);
     TracedPoints points(scene);
@@ -24,16 +58,74 @@ std::vector<StudyFrame> walk_by(const StudyScene& scene, const cache::PixelAngle
         view.eye = scene.eyes[frame];
         view.pixels = pixels;
         view.frame = static_cast<std::uint32_t>(frame);
+        const Stopwatch planning;
         cache::CachePlan plan = cache::plan_frame(scene.tree, view, options, state);
+        const DrawTimes planned = planning.spent();
         points.follow(plan);
         const double traced_rad = points.max_error_rad(plan, view.eye);
         frames.push_back({plan.counts, plan.after.bytes, plan.max_error_rad / pixels.smallest_rad,
-                          traced_rad / pixels.smallest_rad, work_of(scene.tree, plan)});
-        if (sheet != nullptr && frame == sheet->views.size() * scene.eyes.size() / views)
-            add_view(*sheet, scene.tree, plan, view.eye);
+                          traced_rad / pixels.smallest_rad, work_of(scene.tree, plan), std::nullopt});
+        if (outputs.sheet != nullptr && frame == outputs.sheet->views.size() * scene.eyes.size() / views)
+            add_view(*outputs.sheet, scene.tree, plan, view.eye);
+        if (outputs.device != nullptr) {
+            const bool shown = outputs.views != nullptr && frame == view_at(outputs.views->size(), scene.eyes.size());
+            StudyView pictures{view.frame, {}, {}, {}};
+            frames.back().times = times_of(*outputs.device, plan, planned, view, shown ? &pictures : nullptr);
+            if (shown) outputs.views->push_back(std::move(pictures));
+        }
         state = std::move(plan.after);
     }
     return frames;
+}
+
+/// None where nothing is to be drawn, or nothing can be.
+std::unique_ptr<StudyDevice> device_for(const StudyScene& scene, const StudyRequest& request, Study& study) {
+    study.no_times = "Nothing is drawn: no device was requested";
+    if (!request.backend) return nullptr;
+    DrawingOptions options;
+    options.backend = *request.backend;
+    options.viewport = {request.width, request.height};
+    auto device = StudyDevice::open(scene, options);
+    if (!device) {
+        study.no_times = "Nothing is drawn: " + device.error().text();
+        return nullptr;
+    }
+    study.no_times.clear();
+    study.renderer = (*device)->renderer();
+    return std::move(*device);
+}
+
+/// After the walk: the places of the cache's pictures are free.
+void draw_by_object(StudyDevice& device, const StudyScene& scene, const cache::PixelAngles& pixels,
+                    std::vector<StudyView>& views) {
+    for (StudyView& view : views) {
+        if (device.draw_objects(device.pose_at(scene.eyes[view.frame]), pixels).pictures == 0) continue;
+        auto image = device.read_pixels();
+        if (image) view.by_object = std::move(*image);
+    }
+}
+
+Result<void> check_all(const StudyScene& scene, const StudyRequest& request, const Progress& progress,
+                       std::vector<StudyCheck>& checks) {
+    constexpr std::uint32_t compared = 20;
+    CheckRequest check;
+    check.width = request.width;
+    check.height = request.height;
+    check.backend = *request.backend;
+    check.every = std::max(1U, static_cast<std::uint32_t>(scene.eyes.size()) / compared);
+    CheckRequest far = check, published = check, objects = check;
+    far.plane = cache::PlanePlace::far_face;
+    published.rules = cache::ValidityRules::published;
+    objects.by_object = true;
+    for (const auto& [what, one] : {std::pair{"cache", &check},
+                                    {"planes_at_far_faces", &far},
+                                    {"tests_of_1996", &published},
+                                    {"a_picture_an_object", &objects}}) {
+        auto checked = check_pictures(scene, *one, progress);
+        if (!checked) return checked.error();
+        checks.push_back({what, *checked});
+    }
+    return {};
 }
 
 }  // namespace
@@ -65,6 +157,14 @@ StudySums sums_of(std::span<const StudyFrame> frames) {
         sums.work.triangles += frame.work.triangles;
         sums.work.texels += frame.work.texels;
         ++sums.frames;
+        if (!frame.times) continue;
+        ++sums.drawn;
+        sums.faster += frame.times->cached.ms < frame.times->full.ms ? 1 : 0;
+        sums.faster_cpu += frame.times->cached.cpu_ms < frame.times->full.cpu_ms ? 1 : 0;
+        sums.cached.ms += frame.times->cached.ms;
+        sums.cached.cpu_ms += frame.times->cached.cpu_ms;
+        sums.full.ms += frame.times->full.ms;
+        sums.full.cpu_ms += frame.times->full.cpu_ms;
     }
     return sums;
 }
@@ -95,9 +195,15 @@ Result<Study> run_study(const StudyRequest& request, const Progress& progress) {
     cache::CacheOptions options;
     study.sheet.bounds = scene->tree.boxes.front().box;
     for (const dvec3& eye : scene->eyes) study.sheet.bounds.grow(eye);
-    study.corrected = walk_by(*scene, pixels, options, progress, "counting", request.pictures ? &study.sheet : nullptr);
+    std::unique_ptr<StudyDevice> device = device_for(*scene, request, study);
+    WalkOutputs outputs{request.pictures ? &study.sheet : nullptr, device.get(), request.views ? &study.views : nullptr};
+    study.corrected = walk_by(*scene, pixels, options, progress, device ? "drawing" : "counting", outputs);
+    if (device && request.views) draw_by_object(*device, *scene, pixels, study.views);
+    device.reset();
     options.rules = cache::ValidityRules::published;
-    study.published = walk_by(*scene, pixels, options, progress, "counting as in 1996", nullptr);
+    study.published = walk_by(*scene, pixels, options, progress, "counting as in 1996", {});
+    if (request.views && study.no_times.empty())
+        if (auto checked = check_all(*scene, request, progress, study.checks); !checked) return checked.error();
     if (progress.stopped())
         return Error{request.study, "The study was stopped by the user, and nothing was written", "", ErrorKind::stopped};
     return study;

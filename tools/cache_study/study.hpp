@@ -1,7 +1,8 @@
-// A study of the image cache: what every frame of a walk would make, combine and reuse. Counts only: nothing is drawn.
+// A study of the image cache: what every frame of a walk makes, combines and reuses, and how long it takes to draw.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
 #include "tools/cache_study/birds_eye.hpp"
+#include "tools/cache_study/study_device.hpp"
+#include "tools/cache_study/study_pictures.hpp"
 
 namespace surefoot::cache_study {
 
@@ -19,7 +22,9 @@ struct StudyRequest {
     std::string study;
     std::uint32_t frames = 0;  ///< 0: as many as the paper shows
     std::uint32_t width = 320, height = 240;
-    bool pictures = false;  ///< a sheet of bird's-eye views
+    bool pictures = false;                   ///< a sheet of bird's-eye views
+    std::optional<gl::BackendKind> backend;  ///< that draws the frames; none: they are counted only
+    bool views = false;                      ///< some frames as pictures, and whether they are right; with a backend
 };
 
 /// What a frame would draw, and what of it is new.
@@ -29,6 +34,12 @@ struct DrawWork {
 };
 DrawWork work_of(const cache::BoxTree& tree, const cache::CachePlan& plan);
 
+/// How long a frame took: all of it with the cache, its plan included, and without it. Times of the wall and of the processor.
+struct FrameTimes {
+    DrawTimes cached, full;
+    std::uint32_t pictures = 0, leaves = 0;  ///< in view: drawn as pictures, and as triangles
+};
+
 /// A frame of the cache. Errors are of what is drawn as pictures, in pixels at the corner of the view.
 struct StudyFrame {
     cache::CacheCounts counts;
@@ -36,6 +47,7 @@ struct StudyFrame {
     double bound_px = 0;      ///< what the cache promises; 0 by the published rules, which know no sum
     double traced_px = 0;     ///< of points that are followed through the pictures
     DrawWork work;
+    std::optional<FrameTimes> times;  ///< none: it was not drawn
 };
 
 /// Frames, summed.
@@ -45,9 +57,24 @@ struct StudySums {
     double bound_px = 0, traced_px = 0;              ///< of one frame
     DrawWork work;
     std::uint64_t frames = 0;
+    std::uint64_t drawn = 0, faster = 0, faster_cpu = 0;  ///< frames that were drawn, and those that the cache made faster
+    DrawTimes cached, full;
 };
 StudySums sums_of(std::span<const StudyFrame> frames);
 StudySums sums_after_first(const std::vector<StudyFrame>& frames);
+
+/// A frame as pictures, RGBA8.
+struct StudyView {
+    std::uint32_t frame = 0;
+    gl::PixelImage cached, full, by_object;  ///< by_object: one picture an object; empty where no object is known
+};
+constexpr std::uint32_t views_a_study = 5;
+
+/// What was compared with the scene itself.
+struct StudyCheck {
+    const char* what = "";
+    CheckedFrames frames;
+};
 
 /// Both rules walk the same way through the same boxes.
 struct Study {
@@ -55,10 +82,13 @@ struct Study {
     std::uint32_t boxes = 0, filled_boxes = 0;  ///< filled: with triangles
     double walked_m = 0, step_m = 0;            ///< in all, and from a frame to the next
     std::vector<StudyFrame> corrected, published;
-    ViewSheet sheet;  ///< empty unless StudyRequest::pictures
+    ViewSheet sheet;                 ///< empty unless StudyRequest::pictures
+    std::string renderer, no_times;  ///< what drew the frames; or why nothing did
+    std::vector<StudyView> views;    ///< empty unless StudyRequest::views
+    std::vector<StudyCheck> checks;  ///< the same
 };
 
-/// Errors: unknown study, no room for the boxes, stopped.
+/// Errors: unknown study, no room for the boxes, stopped. A device that cannot be had is none: Study::no_times has the reason.
 Result<Study> run_study(const StudyRequest& request, const Progress& progress);
 
 /// What the paper's graphs seem to show after the first frame: many more pictures are reused than combined, and more are

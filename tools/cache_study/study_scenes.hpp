@@ -1,6 +1,8 @@
 // What the image cache is studied on: scenes, trees and walks like those of Schaufler and Stuerzlinger 1996, section 5.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -11,11 +13,18 @@
 
 namespace surefoot::cache_study {
 
+/// Colours of the corners of a triangle, sRGB-encoded.
+using CornerColours = std::array<std::array<std::uint8_t, 3>, 3>;
+
 /// A scene as triangles, its boxes, and the eye of each frame.
 struct StudyScene {
     std::vector<cache::Triangle> triangles;
+    std::vector<CornerColours> colours;  ///< one a triangle
+    std::vector<std::uint32_t> objects;  ///< one a triangle: what it belongs to
+    std::vector<bool> two_sided;         ///< one a triangle
     cache::BoxTree tree;
     std::vector<dvec3> eyes;          ///< evenly, on a straight way
+    dvec3 forward{0, 0, -1};          ///< where all of them look, unit
     double walked_m = 0, step_m = 0;  ///< in all, and from a frame to the next
 };
 

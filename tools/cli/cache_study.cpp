@@ -1,10 +1,16 @@
-// surefoot cache-study: counts of the three-dimensional image cache on walks like the published ones.
+// surefoot cache-study: the three-dimensional image cache on walks like the published ones: counts, times and pictures.
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "render/gl/backends.hpp"
 #include "render/image/image.hpp"
 #include "rt/base/file.hpp"
 #include "tools/cache_study/study.hpp"
@@ -19,11 +25,11 @@ namespace {
 
 struct CacheStudyArguments {
     cache_study::StudyRequest request;
-    std::string size, birds_eye;
+    std::string size, birds_eye, backend{gl::usual_backend}, pictures;
     bool json = false;
 };
 
-constexpr std::string_view sheet_ending = ".png", no_times = "Nothing is drawn yet";
+constexpr std::string_view sheet_ending = ".png";
 
 nlohmann::ordered_json finite_or_null(double value) {
     if (std::isfinite(value)) return value;
@@ -31,17 +37,47 @@ nlohmann::ordered_json finite_or_null(double value) {
 }
 
 nlohmann::ordered_json cache_frame_json(const cache_study::StudyFrame& frame) {
-    return {{"new", frame.counts.fresh},
-            {"combined", frame.counts.combined},
-            {"reused", frame.counts.reused},
-            {"not_replaceable", frame.counts.not_replaceable},
-            {"refreshed_ahead", frame.counts.ahead},
-            {"triangles_drawn", frame.work.triangles},
-            {"texels_made", frame.work.texels},
-            {"bytes", frame.bytes},
-            {"bound_px", frame.bound_px},
-            {"traced_px", frame.traced_px},
-            {"ms", nullptr}};
+    nlohmann::ordered_json json = {{"new", frame.counts.fresh},
+                                   {"combined", frame.counts.combined},
+                                   {"reused", frame.counts.reused},
+                                   {"not_replaceable", frame.counts.not_replaceable},
+                                   {"refreshed_ahead", frame.counts.ahead},
+                                   {"triangles_drawn", frame.work.triangles},
+                                   {"texels_made", frame.work.texels},
+                                   {"bytes", frame.bytes},
+                                   {"bound_px", frame.bound_px},
+                                   {"traced_px", frame.traced_px},
+                                   {"ms", nullptr}};
+    if (!frame.times) return json;
+    json["ms"] = frame.times->cached.ms;
+    json["full_ms"] = frame.times->full.ms;
+    json["cpu_ms"] = frame.times->cached.cpu_ms;
+    json["full_cpu_ms"] = frame.times->full.cpu_ms;
+    json["pictures_in_view"] = frame.times->pictures;
+    json["leaves_in_view"] = frame.times->leaves;
+    return json;
+}
+
+nlohmann::ordered_json study_times_json(const cache_study::StudySums& sums) {
+    if (sums.drawn == 0) return nullptr;
+    const auto frames = static_cast<double>(sums.drawn);
+    return {{"frames", sums.drawn},
+            {"faster", sums.faster},
+            {"faster_cpu", sums.faster_cpu},
+            {"mean_ms", sums.cached.ms / frames},
+            {"mean_full_ms", sums.full.ms / frames},
+            {"mean_cpu_ms", sums.cached.cpu_ms / frames},
+            {"mean_full_cpu_ms", sums.full.cpu_ms / frames}};
+}
+
+nlohmann::ordered_json study_checks_json(const std::vector<cache_study::StudyCheck>& checks) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (const cache_study::StudyCheck& check : checks)
+        json[check.what] = {{"frames", check.frames.frames},       {"wrong_frames", check.frames.wrong_frames},
+                            {"pixels", check.frames.pixels},       {"wrong", check.frames.wrong},
+                            {"uncovered", check.frames.uncovered}, {"most_wrong_of_a_frame", check.frames.worst},
+                            {"pictures", check.frames.pictures},   {"leaves", check.frames.leaves}};
+    return json;
 }
 
 nlohmann::ordered_json cache_sums_json(const cache_study::StudySums& sums, std::uint64_t triangles) {
@@ -74,10 +110,13 @@ void print_study_json(const CacheStudyArguments& a, const cache_study::Study& st
                 {"height", a.request.height},
                 {"walked_m", study.walked_m},
                 {"step_m", study.step_m},
-                {"ms_reason", no_times},
+                {"renderer", study.renderer.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(study.renderer)},
+                {"ms_reason", study.no_times.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(study.no_times)},
                 {"frames", frames},
                 {"after_first", cache_sums_json(cache_study::sums_after_first(study.corrected), study.triangles)},
-                {"published_tests", cache_sums_json(cache_study::sums_after_first(study.published), study.triangles)}});
+                {"published_tests", cache_sums_json(cache_study::sums_after_first(study.published), study.triangles)},
+                {"times_after_first", study_times_json(cache_study::sums_after_first(study.corrected))},
+                {"checks", study_checks_json(study.checks)}});
 }
 
 using StudyRow = std::pair<const char*, cache_study::StudySums>;
@@ -112,6 +151,33 @@ void print_study_verdict(const char* rules, const cache_study::StudySums& sums) 
                shape.reused_per_combined, shape.combined_per_fresh, shape.as_published() ? "holds" : "does not hold");
 }
 
+void print_study_times(const cache_study::Study& study, const cache_study::StudySums& sums) {
+    if (!study.no_times.empty()) fmt::print("There are no times. {}\n", study.no_times);
+    if (sums.drawn == 0) return;
+    const auto frames = static_cast<double>(sums.drawn);
+    fmt::print("Drawn by {}: {:.2f} ms a frame, in full {:.2f}; of processor time {:.2f}, in full {:.2f}.\n", study.renderer,
+               sums.cached.ms / frames, sums.full.ms / frames, sums.cached.cpu_ms / frames, sums.full.cpu_ms / frames);
+    fmt::print("Faster with the cache: {:.1f} % of {} frames; by processor time {:.1f} %.\n",
+               100 * static_cast<double>(sums.faster) / frames, sums.drawn, 100 * static_cast<double>(sums.faster_cpu) / frames);
+}
+
+void print_study_checks(const std::vector<cache_study::StudyCheck>& checks) {
+    if (checks.empty()) return;
+    const report::Columns columns({{"compared in full colours", 26},
+                                   {"frames", -8},
+                                   {"pixels", -10},
+                                   {"wrong", -8},
+                                   {"uncovered", -11},
+                                   {"pictures", -10}});
+    fmt::print("{}\n", columns.heading());
+    for (const cache_study::StudyCheck& check : checks)
+        fmt::print("{}\n", columns.row({check.what, std::to_string(check.frames.frames), std::to_string(check.frames.pixels),
+                                        std::to_string(check.frames.wrong), std::to_string(check.frames.uncovered),
+                                        std::to_string(check.frames.pictures)}));
+    fmt::print(
+        "Wrong: what the pixel shows is not seen in the scene within a pixel. Uncovered: of these, it is there, but hidden.\n");
+}
+
 void print_study_text(const CacheStudyArguments& a, const cache_study::Study& study) {
     fmt::print("{}: {} triangles in {} boxes, {} of them empty; {} frames of {}x{} at 60 degrees\n", a.request.study,
                study.triangles, study.boxes, study.boxes - study.filled_boxes, study.corrected.size(), a.request.width,
@@ -131,7 +197,32 @@ void print_study_text(const CacheStudyArguments& a, const cache_study::Study& st
         print_study_verdict("Here", sums);
         print_study_verdict("By the tests of 1996", of_1996);
     }
-    fmt::print("There are no times. {}.\n", no_times);
+    print_study_times(study, sums);
+    print_study_checks(study.checks);
+}
+
+/// |a - b|, opaque.
+std::vector<std::uint8_t> difference_of(const gl::PixelImage& a, const gl::PixelImage& b) {
+    std::vector<std::uint8_t> rgba(a.rgba.size(), 255);
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+        if (i % 4 != 3) rgba[i] = static_cast<std::uint8_t>(std::abs(int{a.rgba[i]} - int{b.rgba[i]}));
+    return rgba;
+}
+
+Result<void> write_study_views(const CacheStudyArguments& a, const cache_study::Study& study) {
+    for (const cache_study::StudyView& view : study.views) {
+        if (view.cached.rgba.size() != view.full.rgba.size()) continue;
+        const auto write = [&](const char* what, std::span<const std::uint8_t> rgba) -> Result<void> {
+            if (rgba.empty()) return {};
+            return image::write_png(fmt::format("{}/{}-{:05}-{}.png", a.pictures, a.request.study, view.frame, what),
+                                    a.request.width, a.request.height, rgba);
+        };
+        if (auto ok = write("cache", view.cached.rgba); !ok) return ok;
+        if (auto ok = write("full", view.full.rgba); !ok) return ok;
+        if (auto ok = write("difference", difference_of(view.cached, view.full)); !ok) return ok;
+        if (auto ok = write("by-object", view.by_object.rgba); !ok) return ok;
+    }
+    return {};
 }
 
 int run_cache_study(CacheStudyArguments& a, const Context& context) {
@@ -148,6 +239,20 @@ int run_cache_study(CacheStudyArguments& a, const Context& context) {
         if (auto ok = probe_writable(a.birds_eye); !ok) return fail(ok.error());
         a.request.pictures = true;
     }
+    const auto backend = gl::backend_named(a.backend);
+    if (!backend) return misuse(backend.error());
+    if ((*backend)->draws()) a.request.backend = (*backend)->kind;
+    if (!a.pictures.empty()) {
+        if (!a.request.backend)
+            return misuse({"--pictures " + a.pictures, "This backend draws nothing",
+                           "Remove --pictures, or choose another --backend", ErrorKind::misuse});
+        std::error_code error;
+        std::filesystem::create_directories(a.pictures, error);
+        if (error)
+            return fail({a.pictures, "The folder cannot be made: " + error.message(), "Name another folder with --pictures",
+                         ErrorKind::unwritable});
+        a.request.views = true;
+    }
     const auto study = cache_study::run_study(a.request, terminal_progress(context));
     end_progress(context);
     if (!study) return fail(study.error());
@@ -155,6 +260,7 @@ int run_cache_study(CacheStudyArguments& a, const Context& context) {
         const cache_study::SheetPicture sheet = cache_study::picture_of_sheet(study->sheet);
         if (auto ok = image::write_png(a.birds_eye, sheet.width, sheet.height, sheet.rgba); !ok) return fail(ok.error());
     }
+    if (auto ok = write_study_views(a, *study); !ok) return fail(ok.error());
     if (a.json)
         print_study_json(a, *study);
     else
@@ -167,10 +273,11 @@ int run_cache_study(CacheStudyArguments& a, const Context& context) {
 void add_cache_study(CLI::App& app, Context& context) {
     auto a = std::make_shared<CacheStudyArguments>();
     CLI::App* c = add_command(
-        app, "cache-study", "Count what an image cache would make, combine and reuse on walks like the published ones",
-        "surefoot cache-study flat --birds-eye flat.png\n\n"
+        app, "cache-study", "Count and draw what an image cache makes, combines and reuses on walks like the published ones",
+        "surefoot cache-study flat --birds-eye flat.png\n"
+        "  surefoot cache-study room --pictures room\n\n"
         "Pictures of boxes stand for what is in them, as long as no point is displaced by over a pixel. The first table row\n"
-        "is the frame that fills the cache. Nothing is drawn yet: walks do not use this cache, and no times are measured.\n"
+        "is the frame that fills the cache. Each frame is drawn with the cache, then in full, and both are timed.\n"
         "Source: Schaufler and Stuerzlinger 1996.",
         a->json);
     std::string help = "Study. ";
@@ -187,6 +294,14 @@ void add_cache_study(CLI::App& app, Context& context) {
          "--birds-eye", a->birds_eye,
          "PNG file of up to 20 views from above, spread over the frames. Red: new; green: combined; white: reused; black: "
          "not replaceable")
+        ->check(names_something());
+    c->add_option(
+        "--backend", a->backend,
+        "Backend that draws: " + gl::drawing_backends() + "; null: count only [" + std::string(gl::usual_backend) + "]");
+    c->add_option(
+         "--pictures", a->pictures,
+         "Folder for five frames as PNG: with the cache, in full, their difference, and with a picture an object. Frames "
+         "are also compared in full colours")
         ->check(names_something());
     c->callback([&context, a] { context.run = [a, &context] { return run_cache_study(*a, context); }; });
 }
