@@ -317,7 +317,6 @@ void Engine::hide_effects(model::EffectMask hidden) {
     if (hidden == e.hidden) return;
     e.device->draws.plays();
     e.hidden = hidden;
-    e.forget_pictures();
     e.price_without();
     e.device->hide_effects(hidden);
     e.watch.forget();
@@ -330,7 +329,7 @@ void Engine::set_light(const model::Daylight& light, float hour) {
     e.draws.plays();
     e.device->draws.plays();
     e.device->set_light(light);
-    if (!(light == e.light)) e.forget_pictures();
+    if (!(light == e.light)) e.pictures.forget();
     e.light = light;
     e.watch.forget();
     e.rest_picture.leave();

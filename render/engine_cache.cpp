@@ -24,6 +24,10 @@ constexpr double value_share = 1e-5;             // of the picture: of what save
 constexpr std::uint32_t first_picture_item = 1;  // of ItemKind::refresh; the shadow map is below
 constexpr std::size_t uncovered_chunk = 32;
 
+double us_of(const model::FrameCombine& combine, const model::ItemCost& cost) {
+    return static_cast<double>(combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us);
+}
+
 gl::CachePicture to_device(const cache::HeldPicture& held) {
     const cache::Picture& picture = held.picture;
     gl::CachePicture to;
@@ -79,14 +83,11 @@ Result<void> Engine::Impl::make_pictures() {
     for (const model::Index n : pictures.boxes().nodes())
         picture_items.push_back({n, model.nodes[n].first_rep + model.nodes[n].rep_count - 1});
     shown_pictures.reserve(pictures.boxes().size());
+    shown_boxes.reserve(pictures.boxes().size());
     uncovered.reserve(model.nodes.size());
     is_uncovered.resize(model.nodes.size(), false);
     preparer->set_cover(&pictures.boxes());
     return {};
-}
-
-void Engine::Impl::forget_pictures() {
-    if (pictures.any()) pictures.forget();
 }
 
 const model::CoverBits& Engine::cover(const Pose& now, const prepare::Region& next) {
@@ -110,6 +111,7 @@ const model::CoverBits& Engine::cover(const Pose& now, const prepare::Region& ne
 void Engine::Impl::prepay_pictures(const prepare::PreparedFrame& set) {
     pictures_us = 0;
     if (!pictures.any()) return;
+    pictures.drop_pending();  // bought for a frame that drew no cut
     const Pose& pose = set.region.centre;
     const model::Viewport viewport = options.device.viewport;
     const model::Frustum seen = model::make_frustum(pose, viewport, model::far_corners_m(model.nodes[0].box));
@@ -122,7 +124,7 @@ void Engine::Impl::prepay_pictures(const prepare::PreparedFrame& set) {
 
 /// What a new picture saves until it fails, at the rate at which this frame trades time for value.
 void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const select::SelectInput& input) {
-    if (!pictures.any() || !course_known) return;
+    if (!pictures.any() || !course_known || rests) return;
     const Pose& pose = set.region.centre;
     const model::Viewport viewport = options.device.viewport;
     const model::Frustum seen =
@@ -172,27 +174,28 @@ void Engine::Impl::take_pictures() {
 /// The device draws them with the next picture that begins.
 void Engine::Impl::capture_pictures(SubmitReport& report) {
     device->draws.plays();
-    for (std::size_t i = pictures.pending().size(); i-- > 0;) {
-        const cache::Index box = pictures.pending()[i];
-        const std::span<const gl::DrawItem> items =
-            std::span(picture_items).subspan(pictures.boxes().first_node(box), pictures.boxes().nodes(box).size());
-        if (device->capture_picture(to_device(pictures.held(box)), items))
-            ++report.pictures_made;
-        else
-            pictures.drop(box);
-    }
-    pictures.captured();
     for (std::size_t i = 0; i < offered.offered().size(); ++i) {
         const select::Item& item = offered.offered()[i];
-        if (item.kind == select::ItemKind::refresh && item.what >= first_picture_item && cut.bought.has(i))
+        if (item.kind != select::ItemKind::refresh || item.what < first_picture_item || !cut.bought.has(i)) continue;
+        const cache::Index box = item.what - first_picture_item;
+        const std::span<const gl::DrawItem> items =
+            std::span(picture_items).subspan(pictures.boxes().first_node(box), pictures.boxes().nodes(box).size());
+        if (pictures.is_pending(box) && device->capture_picture(to_device(pictures.held(box)), items)) {
+            ++report.pictures_made;
             report.captures_us += static_cast<double>(item.cost_us);
+            pictures.captured(box);
+        } else {
+            cut.bought.cancel(i, item);  // not charged either
+        }
     }
+    pictures.drop_pending();
 }
 
-/// Leaves that the set left out because of pictures that are not valid at this pose.
-void Engine::Impl::find_uncovered(const Pose& pose) {
+/// Leaves that the set left out because of pictures that are not valid at this pose. Returns the time of their coarse forms; no
+/// more are found once they exceed what is left.
+double Engine::Impl::find_uncovered(const Pose& pose, double left_us) {
     uncovered.clear();
-    if (pictures.unserved().empty()) return;
+    double coarse_us = 0;
     const model::ViewScale scale = drawn_scale(pose);
     const model::EffectMask hidden_now = drawn_without();
     for (const cache::Index box : pictures.unserved()) {
@@ -207,21 +210,36 @@ void Engine::Impl::find_uncovered(const Pose& pose) {
             item.full_cost = prices.of(item.full, node.box, pose.position, scale, item.pixels, hidden_now);
             item.coarse_cost = prices.of(item.coarse, node.box, pose.position, scale, item.pixels, hidden_now);
             uncovered.push_back(item);
+            coarse_us += us_of(costs.combine, item.coarse_cost);
+            if (coarse_us > left_us) break;
         }
+        if (coarse_us > left_us) break;
     }
     for (const UncoveredItem& item : uncovered) is_uncovered[item.node] = false;
+    return coarse_us;
 }
 
-/// Before a picture begins: new pictures are captured, and those of the set are chosen for the true pose.
-void Engine::Impl::begin_pictures(const Pose& pose, SubmitReport& report) {
+/// What the cut's stand-ins and what was bought leave of the frame.
+double Engine::Impl::left_for_uncovered_us(const SubmitLimits& limits) const {
+    model::ItemCost coarsest;
+    for (const select::Slice& slice : plan.slices)
+        coarsest += {slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
+    const double cut_us = static_cast<double>(combine().frame_us(coarsest.submit_us, coarsest.raster_us) + enlarge_us());
+    return (limits.limit_us - limits.margin_us - limits.elapsed_us) / correction.factor - cut_us - beside_us();
+}
+
+/// Before a picture begins: pictures of the set are chosen for the true pose. Where too much would have to be drawn in their
+/// place, no prepared set may be used.
+void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, SubmitReport& report) {
     after_us = pictures_value = 0;
     pictures_as_forms = false;
     shown_pictures.clear();
+    shown_boxes.clear();
+    uncovered.clear();
     report.picture_bytes = pictures.bytes();
     if (!pictures.any() || use_last) return;
-    if (drawn_without() != pictures_without) forget_pictures();
+    if (drawn_without() != pictures_without) pictures.forget();
     pictures_without = drawn_without();
-    capture_pictures(report);
     const model::Viewport viewport = options.device.viewport;
     const cache::CacheDraws& draws_now = pictures.draws(prepared->covered, cache::view_pixels(pose, viewport), frustum);
     const double pixel_rad = model::pixel_angle(pose, viewport) / static_cast<double>(drawn_resolution);
@@ -230,14 +248,21 @@ void Engine::Impl::begin_pictures(const Pose& pose, SubmitReport& report) {
         shown_pictures.push_back(to_device(pictures.held(box)));
         report.pictures_us += static_cast<double>(pictures.draw_us(box, pose.position, pixel_rad, view_px));
     }
+    const double left_us = left_for_uncovered_us(limits) - report.pictures_us, coarse_us = find_uncovered(pose, left_us);
+    if (!uncovered.empty() && coarse_us > left_us) {
+        report.uncovered_items = static_cast<std::uint32_t>(uncovered.size());
+        report.pictures_us = 0;
+        shown_pictures.clear();
+        use_last = true;
+        return;
+    }
+    shown_boxes.insert(shown_boxes.end(), draws_now.boxes.begin(), draws_now.boxes.end());
+    shown_set = prepared->covered;
     report.pictures = static_cast<std::uint32_t>(shown_pictures.size());
     count_error(model::none, static_cast<float>(draws_now.worst_error_rad), 1, report);
     pictures_value = draws_now.value;
-    find_uncovered(pose);
-    after_us = report.pictures_us;
-    for (const UncoveredItem& item : uncovered)
-        after_us += static_cast<double>(costs.combine.frame_us(item.coarse_cost.submit_us, item.coarse_cost.raster_us) -
-                                        costs.combine.fixed_us);
+    after_us = report.pictures_us + coarse_us;
+    capture_pictures(report);
 }
 
 /// In full detail where that fits, else coarse: never a hole.
@@ -252,8 +277,7 @@ void Engine::Impl::draw_uncovered(const SubmitLimits& limits, double start_us, m
         for (const UncoveredItem& item : chunk) {
             next += item.full_cost;
             coarse += item.coarse_cost;
-            after_us -= static_cast<double>(costs.combine.frame_us(item.coarse_cost.submit_us, item.coarse_cost.raster_us) -
-                                            costs.combine.fixed_us);
+            after_us -= us_of(costs.combine, item.coarse_cost);
         }
         full = full && in_time({so_far, next, coarse, rest, in_flight_us}, limits, start_us);
         const std::size_t first = drawn.size();
@@ -281,10 +305,10 @@ void Engine::draw_pictures_as_forms() {
     e.draws.plays();
     if (!e.pictures.any() || e.shown_pictures.empty() || std::exchange(e.pictures_as_forms, true)) return;
     const std::size_t first = e.drawn.size();
-    for (const cache::Index box : e.pictures.shown()) {
+    for (const cache::Index box : e.shown_boxes) {
         for (const model::Index n : e.pictures.boxes().leaves(box)) {
             const model::Node& node = e.model.nodes[n];
-            if (e.is_uncovered[n] || !e.pictures.boxes().covered(n, e.prepared->covered) || !e.in_view(n)) continue;
+            if (e.is_uncovered[n] || !e.pictures.boxes().covered(n, e.shown_set) || !e.in_view(n)) continue;
             if (!push_within(e.drawn, {n, node.first_rep + node.rep_count - 1})) break;
             e.is_uncovered[n] = true;
         }

@@ -80,14 +80,17 @@ struct Engine::Impl {
     bool shadow_shown GUARDED_BY(draws) = false;       ///< by the last picture
     bool shadow_unbudgeted GUARDED_BY(draws) = false;  ///< draw_unbudgeted() is to show it
     bool course_known GUARDED_BY(draws) = false;
+    bool rests GUARDED_BY(draws) = false;                      ///< the last submit() was at rest
     bool pictures_as_forms GUARDED_BY(draws) = false;          ///< drawn has what they show, too
     model::EffectMask pictures_without GUARDED_BY(draws) = 0;  ///< effects that the pictures were drawn without
     static constexpr std::uint32_t shadow_item = 0;            ///< the refresh that it is
     cache::WalkCache pictures GUARDED_BY(draws);               ///< none where the device has no layers
     std::vector<gl::DrawItem> picture_items;  ///< full detail of what lies in each box, as in SceneBoxes::nodes()
     std::vector<gl::CachePicture> shown_pictures GUARDED_BY(draws);
-    std::vector<UncoveredItem> uncovered GUARDED_BY(draws);  ///< leaves whose pictures are not valid
-    std::vector<bool> is_uncovered GUARDED_BY(draws);        ///< by node; all false between frames
+    std::vector<cache::Index> shown_boxes GUARDED_BY(draws);  ///< of shown_pictures
+    model::CoverBits shown_set GUARDED_BY(draws);             ///< of the set that they are of
+    std::vector<UncoveredItem> uncovered GUARDED_BY(draws);   ///< leaves whose pictures are not valid
+    std::vector<bool> is_uncovered GUARDED_BY(draws);         ///< by node; all false between frames
     model::CoverBits cover_bits GUARDED_BY(draws);
     cache::EyeCourse course GUARDED_BY(draws);    ///< of cover()
     double turn_rad GUARDED_BY(draws) = 0;        ///< of the views after it
@@ -165,13 +168,13 @@ struct Engine::Impl {
         return use_last ? 0.0 : cut.bought.cost_us - (filtered ? static_cast<double>(filter_us) : 0.0) - lever.spent_us;
     }
     Result<void> make_pictures() REQUIRES(draws);
-    void forget_pictures() REQUIRES(draws);
     void prepay_pictures(const prepare::PreparedFrame& set) REQUIRES(draws);
     void offer_pictures(const prepare::PreparedFrame& set, const select::SelectInput& input) REQUIRES(draws);
     void take_pictures() REQUIRES(draws);
     void capture_pictures(SubmitReport& report) REQUIRES(draws);
-    void find_uncovered(const Pose& pose) REQUIRES(draws);
-    void begin_pictures(const Pose& pose, SubmitReport& report) REQUIRES(draws);
+    double find_uncovered(const Pose& pose, double left_us) REQUIRES(draws);
+    [[nodiscard]] double left_for_uncovered_us(const SubmitLimits& limits) const REQUIRES(draws);
+    void begin_pictures(const Pose& pose, const SubmitLimits& limits, SubmitReport& report) REQUIRES(draws);
     void draw_uncovered(const SubmitLimits& limits, double start_us, model::ItemCost& so_far, SubmitReport& report)
         REQUIRES(draws);
     void draw_pictures(SubmitReport& report) REQUIRES(draws);

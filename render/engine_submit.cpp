@@ -265,7 +265,8 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.device->draws.plays();
     CHECK(e.use_last || e.prepared != nullptr, "A submitted frame was selected before");
     SubmitReport report;
-    if (e.submit_rest(pose, limits, report)) return report;
+    e.rests = e.submit_rest(pose, limits, report);
+    if (e.rests) return report;
     const double start_us = e.now_us(limits);
     e.drawn.clear();
     e.culled.clear();
@@ -273,10 +274,10 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.forecast_us = 0;
     e.profile().begin();
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
+    e.begin_pictures(pose, limits, report);
     e.device->set_filter(e.filtered && !e.use_last ? e.best_filter : e.device->filter());
     if (e.lever.count > 0) e.device->hide_effects(e.hidden | e.lever.left_out);
     e.begin_shadow(pose, report);
-    e.begin_pictures(pose, report);
     e.device->begin_frame(pose, e.drawn_resolution);
     if (e.use_last) {
         e.submit_last(pose, limits, start_us, report);
@@ -316,6 +317,7 @@ bool Engine::fell_to_floor(const Pose& pose, double time_us, double correction) 
     const model::ViewScale scale = e.drawn_scale(pose);
     const model::FrameCombine combine = e.combine();
     model::ItemCost sum;
+    for (const UncoveredItem& item : e.uncovered) sum += item.full_cost;  // the last cut left them to pictures
     const model::EffectMask hidden = e.drawn_without();
     for (const select::Shown& shown : last) {
         if (shown.form == select::SelectState::opened) continue;

@@ -3,15 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace surefoot::cache {
 
 namespace {
 
-constexpr float min_saving_us = 5;   // less is not worth a picture
-constexpr float new_share = 0.5F;    // of a cost that was measured anew
-constexpr float share_alone = 0.5F;  // of what lies across several boxes, for each by itself
+constexpr float min_saving_us = 5;          // less is not worth a picture
+constexpr std::uint64_t relied_frames = 3;  // after which no set relies on what was covered
+constexpr double same_change_frames = 2;    // what is forgotten again so soon was forgotten for one reason
+constexpr double min_life_frames = 4;       // for less, nothing is offered
+constexpr float new_share = 0.5F;           // of a cost that was measured anew
+constexpr float share_alone = 0.5F;         // of what lies across several boxes, for each by itself
 
 float us_of(const model::FrameCombine& combine, const model::ItemCost& cost) {
     return combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us;
@@ -59,17 +63,35 @@ WalkCache::WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vec
 }
 
 void WalkCache::forget() {
-    for (HeldPicture& held : held_) {
-        slots_.give(held.slot);
-        held = {};
+    for (Index i = 0; i < held_.size(); ++i) {
+        HeldPicture& held = held_[i];
+        if (held.any() && held.until == 0 && !is_pending(i)) held.until = frame_ + relied_frames;
     }
-    pending_.clear();
+    const auto since = static_cast<double>(frame_ - forgot_frame_);
+    if (since <= same_change_frames) return;
+    forget_frames_ = forget_frames_ > 0 ? std::min(since, 0.5 * (forget_frames_ + since)) : since;
+    forgot_frame_ = frame_;
 }
+
+/// By how often pictures were forgotten lately. At least 1.
+double WalkCache::frames_to_forget() const {
+    const auto since = static_cast<double>(frame_ - forgot_frame_);
+    if (!(since < 2 * forget_frames_)) return std::numeric_limits<double>::infinity();
+    return std::max(1.0, forget_frames_ - since);
+}
+
+bool WalkCache::is_pending(Index box) const { return std::find(pending_.begin(), pending_.end(), box) != pending_.end(); }
+
+void WalkCache::drop_pending() {
+    while (!pending_.empty()) drop(pending_.back());
+}
+
+void WalkCache::captured(Index box) { pending_.erase(std::remove(pending_.begin(), pending_.end(), box), pending_.end()); }
 
 void WalkCache::drop(Index box) {
     slots_.give(held_[box].slot);
     held_[box] = {};
-    pending_.erase(std::remove(pending_.begin(), pending_.end(), box), pending_.end());
+    captured(box);
 }
 
 WalkCache::Cone WalkCache::cone_of(const Box& box, const dvec3& eye) {
@@ -102,7 +124,8 @@ const model::CoverBits& WalkCache::cover(const ViewPixels& pixels, double radius
     covered_.reset();
     bool any_valid = false;
     for (Index i = 0; i < held_.size(); ++i) {
-        if (!held_[i].any() || std::find(pending_.begin(), pending_.end(), i) != pending_.end()) continue;
+        if (held_[i].until != 0 && frame_ > held_[i].until) drop(i);
+        if (!held_[i].any() || held_[i].until != 0 || is_pending(i)) continue;
         if (!valid_around(held_[i].picture, pixels.eye, radius_m, pixels.smallest_rad(held_[i].box))) continue;
         if (before_blended(held_[i].box)) continue;
         covered_.set(i);
@@ -202,7 +225,7 @@ void WalkCache::refresh_facts(const PlanView& view) {
 /// Whether its picture serves now and for a while.
 bool WalkCache::serves_on(Index box, const PlanView& view) const {
     const HeldPicture& held = held_[box];
-    if (!held.any() || before_blended(held.box)) return false;
+    if (!held.any() || held.until != 0 || before_blended(held.box)) return false;
     const EyeCourse& course = view.course;
     const double max_rad = view.pixels.smallest_rad(held.box);
     return valid_around(held.picture, course.eye, course.radius_m, max_rad) &&
@@ -227,10 +250,13 @@ void WalkCache::choose(Index i, const PlanView& view) {
     if (!serves_on(i, view)) candidates_.push_back({i, own_us_[i]});
 }
 
-std::span<const CacheOffer> WalkCache::plan(const PlanView& view) {
+std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
     offers_.clear();
     candidates_.clear();
-    if (!any() || view.frustum == nullptr) return offers_;
+    if (!any() || of.frustum == nullptr) return offers_;
+    PlanView view = of;
+    view.course.max_frames = std::min(view.course.max_frames, frames_to_forget());
+    if (view.course.max_frames < min_life_frames) return offers_;
     look_from(view.course.eye);
     refresh_facts(view);
     for (Index i = boxes_.size(); i-- > 0;) {

@@ -33,6 +33,7 @@ struct HeldPicture {
     Picture picture;  ///< Picture::texels 0: it has none
     Box box;          ///< grown, as it was captured
     Slot slot;
+    std::uint64_t until = 0;  ///< the last frame that shows it, since it is forgotten; 0: it is not
     [[nodiscard]] bool any() const { return slot.texels > 0; }
 };
 
@@ -74,7 +75,8 @@ public:
     [[nodiscard]] const HeldPicture& held(Index box) const { return held_[box]; }
     [[nodiscard]] std::uint64_t bytes() const { return slots_.bytes(); }
 
-    /// Forgets all pictures: the light is another, or what is drawn.
+    /// Forgets all pictures: the light is another, or what is drawn. No further set is told of them. Sets that rely on them still
+    /// show them, for at most three frames.
     void forget();
 
     /// Begins a frame: what the pictures cover for all eyes within a distance of one. Complete, boxes without contents included;
@@ -87,21 +89,21 @@ public:
     void add_cost(model::Index node, float us, float value);
     void end_costs();
 
-    /// Pictures that pay, the best first. Valid until the next call.
+    /// Pictures that pay before they fail or are forgotten, the best first. Valid until the next call.
     std::span<const CacheOffer> plan(const PlanView& view);
     [[nodiscard]] std::span<const CacheOffer> offers() const { return offers_; }  ///< of the last plan()
     /// The box gets the picture: drop what no set relies on, where there is no room. False: there is none. Until captured(), its
     /// slot holds nothing.
     bool take(const CacheOffer& offer);
-    /// Boxes whose new pictures are to be captured.
-    [[nodiscard]] std::span<const Index> pending() const { return pending_; }
-    void captured() { pending_.clear(); }
+    /// Boxes whose new pictures are to be captured; they are of the light that comes, whenever that is set.
+    [[nodiscard]] bool is_pending(Index box) const;
+    void captured(Index box);
+    void drop_pending();
     void drop(Index box);
 
     /// What a frame draws for a covered set: the largest valid pictures in view, back to front. No eye but one: radius 0. Valid
     /// until the next call.
     const CacheDraws& draws(const model::CoverBits& set, const ViewPixels& pixels, const model::Frustum& frustum);
-    [[nodiscard]] std::span<const Index> shown() const { return draws_.boxes; }        ///< of the last draws()
     [[nodiscard]] std::span<const Index> unserved() const { return draws_.unserved; }  ///< of the last draws()
     /// Predicted, to draw a box's picture.
     [[nodiscard]] float draw_us(Index box, const dvec3& eye, double pixel_rad, double view_px) const;
@@ -131,6 +133,7 @@ private:
     void draw_below(Index box, const ViewPixels& pixels, const model::Frustum& frustum);
     [[nodiscard]] bool serves_on(Index box, const PlanView& view) const;
     [[nodiscard]] bool make_room(std::uint32_t texels, Slot& slot);
+    [[nodiscard]] double frames_to_forget() const;
     void look_from(const dvec3& eye);
     [[nodiscard]] bool before_blended(const Box& box) const;
 
@@ -140,6 +143,8 @@ private:
     std::vector<HeldPicture> held_;            ///< by box
     std::vector<std::uint64_t> last_covered_;  ///< by box: frame in which a set was told of it
     std::uint64_t frame_ = 0;                  ///< counts cover()
+    std::uint64_t forgot_frame_ = 0;           ///< of the last forget()
+    double forget_frames_ = 0;                 ///< usually between two of them; 0: none was
     model::CoverBits covered_;
     std::vector<float> shown_value_, value_;  ///< by box: of the last cut; of the last cut that drew it
     model::CoverBits set_;                    ///< of the last cut

@@ -92,13 +92,82 @@ TEST(PictureCache, WhatPicturesCannotShowAnyMoreIsDrawnInFullOrCoarse) {
     walk.engine().select(walk.set(), test::ample_us, {}, 0);
     walk.engine().submit(pose, {.elapsed_us = 0, .limit_us = test::ample_us});
     EXPECT_FALSE(walk.engine().pictures().empty());
+}
+
+model::Daylight dim(int step) {
     model::Daylight light;
-    light.sun_light = vec3(0.1F);
-    walk.engine().set_light(light);
-    walk.engine().select(walk.set(), test::ample_us, {}, 0);
-    const SubmitReport of_light = walk.engine().submit(pose, {.elapsed_us = 0, .limit_us = test::ample_us});
-    EXPECT_LE(walk.engine().pictures().size(), of_light.pictures_made) << "the old ones are of another light";
-    EXPECT_TRUE(holes(walk.engine(), pose).empty());
+    light.sun_light = vec3(0.1F + 0.01F * static_cast<float>(step));
+    return light;
+}
+
+/// Sets that rely on the old pictures show them; no further set is told of them.
+TEST(PictureCache, AnotherLightLeavesNothingUncovered) {
+    PictureWalk walk(test::forest_model(), {});
+    for (int i = 0; i < 20; ++i) walk.frame(along(walk.engine(), i));
+    ASSERT_GT(walk.engine().pictures().size(), 0U);
+    walk.engine().set_light(dim(0));
+    std::uint32_t made = 0;
+    for (int i = 20; i < 28; ++i) {
+        const Pose pose = along(walk.engine(), i);
+        const SubmitReport report = walk.frame(pose);
+        EXPECT_EQ(report.uncovered_items, 0U) << i;
+        EXPECT_TRUE(holes(walk.engine(), pose).empty()) << i;
+        made += report.pictures_made;
+        if (i == 20) {
+            EXPECT_GT(report.pictures, report.pictures_made);
+        } else {
+            EXPECT_LE(report.pictures, made) << "the old ones are of another light";
+        }
+    }
+    EXPECT_GT(made, 0U);
+}
+
+TEST(PictureCache, NoPictureIsMadeWhereTheLightChangesBeforeItPays) {
+    PictureWalk walk(test::forest_model(), {});
+    std::uint32_t made = 0, late = 0;
+    for (int i = 0; i < 36; ++i) {
+        if (i % 3 == 0) walk.engine().set_light(dim(i));
+        const std::uint32_t of_frame = walk.frame(along(walk.engine(), i)).pictures_made;
+        (i < 6 ? made : late) += of_frame;
+    }
+    EXPECT_EQ(late, 0U);
+    for (int i = 36; i < 46; ++i) made += walk.frame(along(walk.engine(), i)).pictures_made;
+    EXPECT_GT(made, 0U) << "the light stays";
+}
+
+/// The price of what pictures cannot show any more is over the frame's limit: the frame is one without a prepared set.
+TEST(PictureCache, TooMuchInPlaceOfPicturesIsDrawnAsWithoutASet) {
+    PictureWalk walk(test::forest_model(), {});
+    Pose pose;
+    for (int i = 0; i < 20; ++i) walk.frame(pose = along(walk.engine(), i));
+    pose.position.x += 25;
+    walk.engine().device().draws.plays();
+    const auto submit = [&](double limit_us) {
+        walk.engine().select(walk.set(), test::ample_us, {}, 0);
+        return walk.engine().submit(pose, {.elapsed_us = 0, .limit_us = limit_us});
+    };
+    const double all_us = submit(test::ample_us).predicted_us;
+    for (const double share : {0.3, 0.35, 0.4}) {
+        const SubmitReport report = submit(share * all_us);
+        EXPECT_GT(report.uncovered_items, 0U);
+        EXPECT_LE(report.predicted_us, share * all_us) << share;
+    }
+}
+
+/// At rest nothing is captured, so nothing is bought. What is captured after it is paid for.
+TEST(PictureCache, AtRestNoPictureIsBought) {
+    PictureWalk walk(test::forest_model(), {.rest_after_ms = 30});
+    bool rested = false;
+    for (int i = 0; i < 20; ++i) {
+        const SubmitReport report = walk.frame(along(walk.engine(), i < 2 ? i : i < 12 ? 2 : i - 10));
+        EXPECT_EQ(report.pictures_made > 0, report.captures_us > 0) << i;
+        EXPECT_LE(report.pictures_made, 8U) << i;
+        if (report.at_rest && rested) {
+            EXPECT_EQ(walk.bought(), 0U) << i;
+        }
+        rested = rested || report.at_rest;
+    }
+    EXPECT_TRUE(rested);
 }
 
 TEST(PictureCache, NoRoomForAPictureMeansNoPicture) {

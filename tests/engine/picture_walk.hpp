@@ -19,6 +19,8 @@ struct PictureWalkOptions {
     int workers = 1;
     model::Viewport viewport{320, 240};
     gl::BackendKind kind = gl::BackendKind::null;
+    double rest_after_ms = 0;
+    double max_error_rad = 0;
 };
 
 /// Prepares each frame's set from what the frame before knew, as the virtual clock of a walk does.
@@ -32,6 +34,8 @@ public:
         options.prepare.workers = how.workers;
         options.prepare.occlusion = false;  // so that what is not drawn is a hole, whatever hides it
         options.selector = how.selector;
+        options.rest_after_ms = how.rest_after_ms;
+        options.max_error_rad = how.max_error_rad;
         auto opened = Engine::open(model, model::default_costs(), options);
         absent_ = !opened.ok() && opened.error().kind == ErrorKind::unsupported;
         EXPECT_TRUE(opened.ok() || absent_);
@@ -43,6 +47,14 @@ public:
     [[nodiscard]] bool absent() const { return absent_; }
     [[nodiscard]] Engine& engine() { return *engine_; }
     [[nodiscard]] const prepare::PreparedFrame& set() const { return set_; }
+
+    /// Pictures that the last cut has bought.
+    [[nodiscard]] std::size_t bought() const {
+        std::size_t count = 0;
+        for (const select::Item& item : engine_->offered().offered())
+            count += item.kind == select::ItemKind::refresh && engine_->bought(item.kind, item.what) ? 1 : 0;
+        return count;
+    }
 
     SubmitReport frame(const Pose& pose, double budget_us = ample_us, double limit_us = ample_us) {
         prepare(pose);
@@ -60,7 +72,9 @@ public:
         pose_ = pose;
         known_ = true;
         engine_->select(set_, budget_us, {}, 0);
-        return engine_->submit(pose, {.elapsed_us = 0, .limit_us = limit_us});
+        constexpr std::int64_t frame_ns = 33'333'333;
+        return engine_->submit(
+            pose, {.elapsed_us = 0, .limit_us = limit_us, .frame_ns = static_cast<std::int64_t>(frames_) * frame_ns});
     }
 
 private:
