@@ -85,7 +85,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->restless = restless_nodes(impl->model, impl->moving);
     impl->poses = model::MotionPoses(impl->model);
     if (impl->device->receives_shadows()) impl->shadow = MovingShadow(impl->model);
-    if (auto made = impl->make_pictures(); !made) return made.error();
+    impl->make_pictures();
     impl->light = model::daylight_of_model(impl->model.sun_direction, impl->model.light);
     const std::size_t in_pictures = impl->pictures.any() ? impl->model.nodes.size() : 0;
     const std::size_t max_drawn = std::max<std::size_t>(candidates * 2 + in_pictures, impl->unprepared.capacity());
@@ -282,6 +282,9 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.prepared = &prepared;
     e.drawn_resolution = prepared.resolution;
     e.correction = correction;
+    e.promised_rad = e.options.max_error_rad > 0.0              ? e.options.max_error_rad
+                     : e.keeps_target && target_error_rad > 0.0 ? target_error_rad
+                                                                : 0.0;
     e.begin_offers();
     e.prepay_resolution(prepared);
     e.prepay_pictures(prepared);
@@ -292,9 +295,6 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
     e.one_more_ms = e.gain_of_one_more_ms(input);
-    e.promised_rad = e.options.max_error_rad > 0.0              ? e.options.max_error_rad
-                     : e.keeps_target && target_error_rad > 0.0 ? target_error_rad
-                                                                : 0.0;
     e.last_frame_us = 0;
     e.offers_used = true;
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);

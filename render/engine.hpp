@@ -148,6 +148,9 @@ public:
     void prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
                  prepare::PreparedFrame& out, const PrepareHints& hints = {});
 
+    /// Whether there is an image cache. Where layers were requested and it is not, picture_reason() has the reason.
+    [[nodiscard]] bool has_pictures() const;
+    [[nodiscard]] const std::string& picture_reason() const;
     /// What the pictures of the image cache show on the way from a pose to a region: for PrepareHints::covered. Once a frame,
     /// before select(). Nothing without a cache (gl::DeviceOptions::picture_layers).
     const model::CoverBits& cover(const Pose& now, const prepare::Region& next);

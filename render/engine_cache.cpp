@@ -19,6 +19,7 @@ constexpr double may_turn_rad = 0.1;     // while a picture lives, beyond what t
 constexpr double jump_m = 2;             // in a frame: no course leads there
 constexpr double unlimited_share = 0.1;  // of the budget, for new pictures where nothing limits what a frame spends
 constexpr double limited_share = 0.25;   // the same where forms compete with them
+constexpr double most_share = 1.0 / 16;  // of the budget, for one picture: what a slice may take
 constexpr double usual_budget_us = 33'333;
 constexpr double value_share = 1e-5;             // of the picture: of what saves time that nothing else can use
 constexpr std::uint32_t first_picture_item = 1;  // of ItemKind::refresh; the shadow map is below
@@ -40,6 +41,7 @@ gl::CachePicture to_device(const cache::HeldPicture& held) {
     to.low_m = picture.low_m;
     to.side_m = picture.side_m;
     to.box = held.box;
+    to.grown_m = held.grown_m;
     return to;
 }
 
@@ -67,11 +69,17 @@ std::vector<Box> blended_boxes(const model::Model& model) {
 
 }  // namespace
 
-/// Where the device has layers for pictures. Nothing else of the engine changes without them.
-Result<void> Engine::Impl::make_pictures() {
-    if (device->picture_layers() == 0) return {};
+/// Where the device has layers for pictures, and the model has boxes for them. Nothing else of the engine changes without them.
+void Engine::Impl::make_pictures() {
+    if (device->picture_layers() == 0) {
+        picture_reason = device->picture_reason();
+        return;
+    }
     auto boxes = cache::SceneBoxes::make(model, not_for_pictures(model, shadow.any()));
-    if (!boxes) return boxes.error();
+    if (!boxes) {
+        picture_reason = boxes.error().text();
+        return;
+    }
     boxes->price_captures(model, costs);
     cache::WalkCacheOptions how;
     how.layers = device->picture_layers();
@@ -87,8 +95,14 @@ Result<void> Engine::Impl::make_pictures() {
     uncovered.reserve(model.nodes.size());
     is_uncovered.resize(model.nodes.size(), false);
     preparer->set_cover(&pictures.boxes());
-    return {};
 }
+
+bool Engine::has_pictures() const {
+    impl_->draws.plays();
+    return impl_->pictures.any();
+}
+
+const std::string& Engine::picture_reason() const { return impl_->picture_reason; }
 
 const model::CoverBits& Engine::cover(const Pose& now, const prepare::Region& next) {
     Impl& e = *impl_;
@@ -112,6 +126,7 @@ void Engine::Impl::prepay_pictures(const prepare::PreparedFrame& set) {
     pictures_us = 0;
     if (!pictures.any()) return;
     pictures.drop_pending();  // bought for a frame that drew no cut
+    pictures.set_promise(promised_rad);
     const Pose& pose = set.region.centre;
     const model::Viewport viewport = options.device.viewport;
     const model::Frustum seen = model::make_frustum(pose, viewport, model::far_corners_m(model.nodes[0].box));
@@ -136,12 +151,13 @@ void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const selec
     view.pixel_rad = model::pixel_angle(pose, viewport) / static_cast<double>(drawn_resolution);
     view.view_px = 1.0 * viewport.width * viewport.height;
     view.combine = combine();
+    const double budget_us = std::isfinite(input.budget_us) ? input.budget_us : usual_budget_us;
+    view.max_price_us = most_share * budget_us;
     const std::span<const cache::CacheOffer> plan_of_pictures = pictures.plan(view);
     if (plan_of_pictures.empty()) return;
     const auto room_us = static_cast<float>(select::Budget(input).room_us());
     const float a_ms = by_budget ? set.curve.value_at(room_us + 1000.0F) - set.curve.value_at(room_us) : 0.0F;
     const double rate = std::max(1e-3 * static_cast<double>(a_ms), value_share * set.full_value / usual_budget_us);
-    const double budget_us = std::isfinite(input.budget_us) ? input.budget_us : usual_budget_us;
     double left_us = (by_budget ? limited_share : unlimited_share) * budget_us;
     for (const cache::CacheOffer& offer : plan_of_pictures) {
         if (static_cast<double>(offer.price_us) > left_us) continue;
@@ -259,7 +275,11 @@ void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, 
     shown_boxes.insert(shown_boxes.end(), draws_now.boxes.begin(), draws_now.boxes.end());
     shown_set = prepared->covered;
     report.pictures = static_cast<std::uint32_t>(shown_pictures.size());
-    count_error(model::none, static_cast<float>(draws_now.worst_error_rad), 1, report);
+    for (const cache::Index box : draws_now.boxes) {
+        const double error_rad = cache::picture_errors(pictures.held(box).picture, pose.position).total();
+        count_error(pictures.boxes().important_leaf(box), static_cast<float>(error_rad), pictures.boxes().importance(box),
+                    report);
+    }
     pictures_value = draws_now.value;
     after_us = report.pictures_us + coarse_us;
     capture_pictures(report);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "render/cache/walk_cache.hpp"
@@ -86,6 +87,7 @@ struct Engine::Impl {
     static constexpr std::uint32_t shadow_item = 0;            ///< the refresh that it is
     cache::WalkCache pictures GUARDED_BY(draws);               ///< none where the device has no layers
     std::vector<gl::DrawItem> picture_items;  ///< full detail of what lies in each box, as in SceneBoxes::nodes()
+    std::string picture_reason;               ///< why there are none
     std::vector<gl::CachePicture> shown_pictures GUARDED_BY(draws);
     std::vector<cache::Index> shown_boxes GUARDED_BY(draws);  ///< of shown_pictures
     model::CoverBits shown_set GUARDED_BY(draws);             ///< of the set that they are of
@@ -167,7 +169,7 @@ struct Engine::Impl {
     [[nodiscard]] double beside_us() const REQUIRES(draws) {
         return use_last ? 0.0 : cut.bought.cost_us - (filtered ? static_cast<double>(filter_us) : 0.0) - lever.spent_us;
     }
-    Result<void> make_pictures() REQUIRES(draws);
+    void make_pictures() REQUIRES(draws);
     void prepay_pictures(const prepare::PreparedFrame& set) REQUIRES(draws);
     void offer_pictures(const prepare::PreparedFrame& set, const select::SelectInput& input) REQUIRES(draws);
     void take_pictures() REQUIRES(draws);

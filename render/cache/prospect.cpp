@@ -54,8 +54,8 @@ std::optional<Prospect> prospect_of(const Box& box, const EyeCourse& course, dou
     const double widest = std::max({box.half().x, box.half().y, box.half().z});
     if (widest > max_rad * sides.back() * (distance + half)) return std::nullopt;
     Prospect found;
-    const dvec3 margin(max_rad * (distance + half));
-    found.box = {box.min - margin, box.max + margin};
+    found.grown_m = max_rad * (distance + half);
+    found.box = {box.min - dvec3(found.grown_m), box.max + dvec3(found.grown_m)};
     const auto from_here = picture_of(found.box, course.eye);
     if (!from_here) return std::nullopt;
     const double a_frame = picture_errors(*from_here, course.eye + course.step_m).total();

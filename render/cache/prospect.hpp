@@ -21,6 +21,7 @@ struct EyeCourse {
 struct Prospect {
     Picture picture;         ///< of the grown box
     Box box;                 ///< grown by an angle of max_rad at its far depth: neighbours may err by a pixel each
+    double grown_m = 0;      ///< at each face
     double life_frames = 0;  ///< from now on, on the course; at most EyeCourse::max_frames
 };
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace surefoot::cache {
@@ -25,6 +24,16 @@ bool leaves_met(const BoxTree& tree, Index i, const Box& box, std::size_t limit,
     }
     for (Index child = of.first_child; child < of.first_child + of.child_count; ++child)
         if (!leaves_met(tree, child, box, limit, met)) return false;
+    return true;
+}
+
+/// Whether all leaves of the tree below a box that another box meets are among the bits.
+bool covers(const BoxTree& tree, Index i, const Box& box, const model::CoverBits& bits) {
+    const CacheBox& of = tree.boxes[i];
+    if (bits[i] || !meets(of.box, box)) return true;
+    if (of.child_count == 0) return false;
+    for (Index child = of.first_child; child < of.first_child + of.child_count; ++child)
+        if (!covers(tree, child, box, bits)) return false;
     return true;
 }
 
@@ -69,6 +78,13 @@ Result<SceneBoxes> SceneBoxes::make(const model::Model& model, const std::vector
     }
     boxes.first_of_node_.push_back(static_cast<Index>(boxes.boxes_of_node_.size()));
     boxes.find_contents(leaves, excluded);
+    for (Index i = 0; i < boxes.size(); ++i) {
+        const std::span<const Index> shown = boxes.leaves(i);
+        const auto most = std::max_element(
+            shown.begin(), shown.end(), [&](Index a, Index b) { return model.nodes[a].importance < model.nodes[b].importance; });
+        boxes.important_.push_back(most == shown.end() ? none : *most);
+        boxes.importance_.push_back(most == shown.end() ? 0.0F : model.nodes[*most].importance);
+    }
     for (auto n = static_cast<Index>(model.nodes.size()); n-- > 1;)  // children come after their parents
         if (boxes.node_boxes_[n].empty() && model.nodes[n].parent != model::none) boxes.node_boxes_[model.nodes[n].parent] = {};
     return boxes;
@@ -122,18 +138,7 @@ void SceneBoxes::complete(model::CoverBits& bits) const {
 
 bool SceneBoxes::covered(model::Index node, const model::CoverBits& bits) const {
     const Box& box = node_boxes_[node];
-    if (tree_.boxes.empty() || box.empty()) return false;
-    std::array<Index, max_levels * max_branching> open{};  // each level adds less than the branching
-    std::size_t count = 0;
-    open[count++] = 0;
-    while (count > 0) {
-        const Index i = open[--count];
-        const CacheBox& of = tree_.boxes[i];
-        if (bits[i] || !meets(of.box, box)) continue;
-        if (of.child_count == 0 || count + of.child_count > open.size()) return false;
-        for (Index child = of.first_child; child < of.first_child + of.child_count; ++child) open[count++] = child;
-    }
-    return true;
+    return !tree_.boxes.empty() && !box.empty() && covers(tree_, 0, box, bits);
 }
 
 void SceneBoxes::price_captures(const model::Model& model, const model::CostModel& costs) {

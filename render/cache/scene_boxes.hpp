@@ -38,6 +38,9 @@ public:
     [[nodiscard]] std::span<const Index> nodes(Index box) const {
         return std::span(nodes_).subspan(ranges_[box].first, ranges_[box].nodes);
     }
+    /// The most important of these leaves. Only where it has contents.
+    [[nodiscard]] Index important_leaf(Index box) const { return important_[box]; }
+    [[nodiscard]] float importance(Index box) const { return importance_[box]; }
     [[nodiscard]] std::size_t first_node(Index box) const { return ranges_[box].first; }  ///< in nodes()
     /// Of all boxes, box by box.
     [[nodiscard]] std::span<const Index> nodes() const { return nodes_; }
@@ -72,6 +75,8 @@ private:
     std::vector<bool> may_have_picture_;
     std::vector<Box> filled_;
     std::vector<Range> ranges_;
+    std::vector<Index> important_;
+    std::vector<float> importance_;
     std::vector<Index> nodes_;
     std::vector<Index> first_of_node_, boxes_of_node_;  ///< by node
     model::CoverBits empty_;

@@ -14,6 +14,7 @@ constexpr float min_saving_us = 5;          // less is not worth a picture
 constexpr std::uint64_t relied_frames = 3;  // after which no set relies on what was covered
 constexpr double same_change_frames = 2;    // what is forgotten again so soon was forgotten for one reason
 constexpr double min_life_frames = 4;       // for less, nothing is offered
+constexpr double rounded_down = 1 - 1e-6;   // errors are reported in float
 constexpr float new_share = 0.5F;           // of a cost that was measured anew
 constexpr float share_alone = 0.5F;         // of what lies across several boxes, for each by itself
 
@@ -57,6 +58,8 @@ WalkCache::WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vec
     candidates_.reserve(count);
     offers_.reserve(options.max_offers);
     pending_.reserve(count);
+    victims_.reserve(count);
+    trial_ = slots_;
     relies_.resize(count, false);
     draws_.boxes.reserve(count);
     draws_.unserved.reserve(count);
@@ -78,6 +81,14 @@ double WalkCache::frames_to_forget() const {
     const auto since = static_cast<double>(frame_ - forgot_frame_);
     if (!(since < 2 * forget_frames_)) return std::numeric_limits<double>::infinity();
     return std::max(1.0, forget_frames_ - since);
+}
+
+/// Error and texels that a picture of the box may have.
+double WalkCache::allowed_rad(Index box, const Box& seen, const ViewPixels& pixels) const {
+    const double pixel_rad = pixels.smallest_rad(seen);
+    const auto importance = static_cast<double>(boxes_.importance(box));
+    if (!(promise_rad_ > 0) || !(importance > 0)) return pixel_rad;
+    return std::min(pixel_rad, rounded_down * promise_rad_ / importance);
 }
 
 bool WalkCache::is_pending(Index box) const { return std::find(pending_.begin(), pending_.end(), box) != pending_.end(); }
@@ -126,7 +137,7 @@ const model::CoverBits& WalkCache::cover(const ViewPixels& pixels, double radius
     for (Index i = 0; i < held_.size(); ++i) {
         if (held_[i].until != 0 && frame_ > held_[i].until) drop(i);
         if (!held_[i].any() || held_[i].until != 0 || is_pending(i)) continue;
-        if (!valid_around(held_[i].picture, pixels.eye, radius_m, pixels.smallest_rad(held_[i].box))) continue;
+        if (!valid_around(held_[i].picture, pixels.eye, radius_m, allowed_rad(i, held_[i].box, pixels))) continue;
         if (before_blended(held_[i].box)) continue;
         covered_.set(i);
         last_covered_[i] = frame_;
@@ -195,13 +206,14 @@ bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) con
     const float saves_us = saving_us_[box] - draw_us(box, view.course.eye, view.pixel_rad, view.view_px);
     if (!(saves_us > min_saving_us)) return false;
     if (before_blended(boxes_.filled(box))) return false;
-    const auto prospect = prospect_of(boxes_.filled(box), view.course, view.pixels.smallest_rad(boxes_.filled(box)));
+    const auto prospect = prospect_of(boxes_.filled(box), view.course, allowed_rad(box, boxes_.filled(box), view.pixels));
     if (!prospect) return false;
     offer.box = box;
     offer.prospect = *prospect;
     const double texels = prospect->picture.texels, per_m = texels / prospect->picture.side_m;
     offer.price_us = us_of(view.combine, boxes_.capture_cost(box, per_m)) + options_.capture_us +
                      1e-3F * options_.capture_ns_per_texel * static_cast<float>(texels * texels);
+    if (offer.price_us > static_cast<float>(view.max_price_us)) return false;
     offer.gain_us = saves_us * static_cast<float>(prospect->life_frames);
     return offer.gain_us >= static_cast<float>(options_.pays) * offer.price_us;
 }
@@ -227,7 +239,7 @@ bool WalkCache::serves_on(Index box, const PlanView& view) const {
     const HeldPicture& held = held_[box];
     if (!held.any() || held.until != 0 || before_blended(held.box)) return false;
     const EyeCourse& course = view.course;
-    const double max_rad = view.pixels.smallest_rad(held.box);
+    const double max_rad = allowed_rad(box, held.box, view.pixels);
     return valid_around(held.picture, course.eye, course.radius_m, max_rad) &&
            valid_around(held.picture, course.eye + course.step_m * options_.renewed_frames, course.radius_m, max_rad);
 }
@@ -253,6 +265,7 @@ void WalkCache::choose(Index i, const PlanView& view) {
 std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
     offers_.clear();
     candidates_.clear();
+    no_room_for_ = 0;
     if (!any() || of.frustum == nullptr) return offers_;
     PlanView view = of;
     view.course.max_frames = std::min(view.course.max_frames, frames_to_forget());
@@ -277,28 +290,35 @@ std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
     return offers_;
 }
 
-/// The longest unused go first, of those that no set relies on.
-bool WalkCache::make_room(std::uint32_t texels, Slot& slot) {
-    while (true) {
-        if (const auto taken = slots_.take(texels)) {
-            slot = *taken;
-            return true;
-        }
-        Index oldest = none;
-        for (Index i = 0; i < held_.size(); ++i) {
-            if (!held_[i].any() || last_covered_[i] + options_.kept_frames >= frame_) continue;
-            if (oldest == none || last_covered_[i] < last_covered_[oldest]) oldest = i;
-        }
-        if (oldest == none) return false;
-        drop(oldest);
+/// The box's own slot goes first, then the longest unused of those that no set relies on. False: there is no room; nothing is
+/// changed.
+bool WalkCache::find_room(Index box, std::uint32_t texels) {
+    if (no_room_for_ != 0 && texels >= no_room_for_ && held_[box].slot.texels < texels) return false;
+    victims_.clear();
+    trial_ = slots_;  // of the same size: nothing allocates
+    trial_.give(held_[box].slot);
+    if (trial_.take(texels)) return true;
+    for (Index i = 0; i < held_.size(); ++i)
+        if (i != box && held_[i].any() && last_covered_[i] + options_.kept_frames < frame_) victims_.push_back(i);
+    std::sort(victims_.begin(), victims_.end(), [&](Index a, Index b) {
+        return last_covered_[a] != last_covered_[b] ? last_covered_[a] < last_covered_[b] : a < b;
+    });
+    for (std::size_t i = 0; i < victims_.size(); ++i) {
+        trial_.give(held_[victims_[i]].slot);
+        if (!trial_.take(texels)) continue;
+        victims_.resize(i + 1);
+        return true;
     }
+    no_room_for_ = texels;
+    return false;
 }
 
 bool WalkCache::take(const CacheOffer& offer) {
-    Slot slot;
-    if (!any() || pending_.size() == pending_.capacity() || !make_room(offer.prospect.picture.texels, slot)) return false;
+    const std::uint32_t texels = offer.prospect.picture.texels;
+    if (!any() || pending_.size() == pending_.capacity() || !find_room(offer.box, texels)) return false;
     drop(offer.box);
-    held_[offer.box] = {offer.prospect.picture, offer.prospect.box, slot};
+    for (const Index victim : victims_) drop(victim);
+    held_[offer.box] = {offer.prospect.picture, offer.prospect.box, offer.prospect.grown_m, slots_.take(texels).value_or(Slot{})};
     last_covered_[offer.box] = frame_;  // so that it is not dropped before a set may use it
     pending_.push_back(offer.box);
     return true;
@@ -307,7 +327,7 @@ bool WalkCache::take(const CacheOffer& offer) {
 const CacheDraws& WalkCache::draws(const model::CoverBits& set, const ViewPixels& pixels, const model::Frustum& frustum) {
     draws_.boxes.clear();
     draws_.unserved.clear();
-    draws_.worst_error_rad = draws_.value = 0;
+    draws_.value = 0;
     if (!any()) return draws_;
     look_from(pixels.eye);
     for (Index i = boxes_.size(); i-- > 0;) {
@@ -325,10 +345,9 @@ void WalkCache::draw_below(Index i, const ViewPixels& pixels, const model::Frust
     const CacheBox& box = boxes_.tree().boxes[i];
     if (!relies_[i] || !model::visible(frustum, boxes_.filled(i))) return;
     const HeldPicture& held = held_[i];
-    if (held.any() && valid_around(held.picture, pixels.eye, 0, pixels.smallest_rad(held.box)) && !before_blended(held.box)) {
+    if (held.any() && valid_around(held.picture, pixels.eye, 0, allowed_rad(i, held.box, pixels)) && !before_blended(held.box)) {
         draws_.boxes.push_back(i);
         draws_.value += static_cast<double>(value_[i]);
-        draws_.worst_error_rad = std::max(draws_.worst_error_rad, picture_errors(held.picture, pixels.eye).total());
     } else if (box.child_count == 0) {
         draws_.unserved.push_back(i);
     } else {

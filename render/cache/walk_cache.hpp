@@ -32,6 +32,7 @@ struct WalkCacheOptions {
 struct HeldPicture {
     Picture picture;  ///< Picture::texels 0: it has none
     Box box;          ///< grown, as it was captured
+    double grown_m = 0;
     Slot slot;
     std::uint64_t until = 0;  ///< the last frame that shows it, since it is forgotten; 0: it is not
     [[nodiscard]] bool any() const { return slot.texels > 0; }
@@ -52,6 +53,7 @@ struct PlanView {
     const model::Frustum* frustum = nullptr;  ///< of all eyes that the plan is for
     double pixel_rad = 1e-3;                  ///< in the middle of the view
     double view_px = 0;                       ///< of the whole view
+    double max_price_us = 0;                  ///< of a picture
     model::FrameCombine combine;
 };
 
@@ -59,7 +61,6 @@ struct PlanView {
 struct CacheDraws {
     std::vector<Index> boxes;     ///< their pictures, back to front
     std::vector<Index> unserved;  ///< covered leaves of the tree whose pictures are not valid: their nodes must be drawn
-    double worst_error_rad = 0;   ///< of the pictures
     double value = 0;             ///< what their contents showed when they were drawn last
 };
 
@@ -78,6 +79,9 @@ public:
     /// Forgets all pictures: the light is another, or what is drawn. No further set is told of them. Sets that rely on them still
     /// show them, for at most three frames.
     void forget();
+
+    /// No picture's error times the importance of what it shows may exceed this. 0: a pixel is all that limits it.
+    void set_promise(double error_rad) { promise_rad_ = error_rad; }
 
     /// Begins a frame: what the pictures cover for all eyes within a distance of one. Complete, boxes without contents included;
     /// no bit where no picture is valid.
@@ -132,8 +136,9 @@ private:
     void choose(Index box, const PlanView& view);
     void draw_below(Index box, const ViewPixels& pixels, const model::Frustum& frustum);
     [[nodiscard]] bool serves_on(Index box, const PlanView& view) const;
-    [[nodiscard]] bool make_room(std::uint32_t texels, Slot& slot);
+    [[nodiscard]] bool find_room(Index box, std::uint32_t texels);
     [[nodiscard]] double frames_to_forget() const;
+    [[nodiscard]] double allowed_rad(Index box, const Box& seen, const ViewPixels& pixels) const;
     void look_from(const dvec3& eye);
     [[nodiscard]] bool before_blended(const Box& box) const;
 
@@ -153,13 +158,17 @@ private:
     std::vector<Fact> facts_;                 ///< by box
     std::vector<float> own_us_, best_us_;     ///< by box: net of a picture; of the best boxes at and below
     Index next_fact_ = 0;
+    double promise_rad_ = 0;
     std::vector<Box> blended_;
     std::vector<Cone> cones_;  ///< of blended_, from an eye
     dvec3 cones_eye_{0.0};
     std::vector<Candidate> candidates_;
     std::vector<CacheOffer> offers_;
     std::vector<Index> pending_;
-    std::vector<bool> relies_;  ///< by box: a set needs something below it
+    std::vector<Index> victims_;     ///< of take(): what would go for room
+    Slots trial_;                    ///< of take()
+    std::uint32_t no_room_for_ = 0;  ///< texels of a side, since plan(); 0: nothing failed
+    std::vector<bool> relies_;       ///< by box: a set needs something below it
     CacheDraws draws_;
 };
 

@@ -77,7 +77,7 @@ struct Preparer::Impl {
     float target_factor = 1;                    ///< of the error target, raised while frames look at too many nodes
     std::array<EffectLoss, max_effect_groups> effect_losses;
     const model::CoverTest* cover = nullptr;    ///< null: nothing is left out
-    const model::CoverBits* covered = nullptr;  ///< of this set
+    const model::CoverBits* covered = nullptr;  ///< of this set; null: nothing is
     std::atomic<std::int64_t> worker_cpu_ns{0};
 
     Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o);
@@ -198,7 +198,7 @@ void Preparer::Impl::visit_children(const RegionView& view, const model::Frustum
         const Box& box = box_of(child, now);
         const PlaneMask mask = cull_planes(frustum, box, parent.mask);
         if (mask == culled) continue;
-        if (cover != nullptr && cover->covered(child, *covered)) {
+        if (covered != nullptr && cover->covered(child, *covered)) {
             ++left_out;
             continue;
         }
@@ -447,8 +447,8 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.parts_left = Occlusion::max_parts_a_set;
     out.visits = 1;
     s.choice_bound = root.rep_count;
-    s.covered = &out.covered;
-    const bool all_covered = s.cover != nullptr && s.cover->covered(0, out.covered);
+    s.covered = s.cover != nullptr && out.covered.any() ? &out.covered : nullptr;
+    const bool all_covered = s.covered != nullptr && s.cover->covered(0, out.covered);
     if (mask != culled && !all_covered) s.visits.push_back(s.visit_of(view, 0, none, mask));
     for (Index begin = 0, end = static_cast<Index>(s.visits.size()); begin < end;) {
         s.expand_level(view, frustum, begin, end, out);

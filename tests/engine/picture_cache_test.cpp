@@ -209,6 +209,45 @@ TEST(PictureCache, WithoutABudgetNewPicturesTakeATenthOfAFrameAtMost) {
     }
 }
 
+TEST(PictureCache, NoPictureTakesLongerThanASliceMay) {
+    PictureWalk walk(test::forest_model(), {});
+    constexpr double budget_us = 4000;
+    std::uint32_t made = 0;
+    for (int i = 0; i < 20; ++i) {
+        made += walk.frame(along(walk.engine(), i), budget_us).pictures_made;
+        for (const select::Item& item : walk.engine().offered().offered()) {
+            if (item.kind == select::ItemKind::refresh) {
+                EXPECT_LE(item.cost_us, budget_us / 16) << i;
+            }
+        }
+    }
+    EXPECT_GT(made, 0U);
+}
+
+TEST(PictureCache, PicturesKeepTheGuaranteedError) {
+    for (const double max_error_rad : {1e-3, 2.5e-3}) {
+        PictureWalk walk(test::forest_model(), {.selector = "curve-budget", .max_error_rad = max_error_rad});
+        std::uint32_t pictures = 0;
+        for (int i = 0; i < 20; ++i) {
+            const SubmitReport report = walk.frame(along(walk.engine(), i));
+            EXPECT_EQ(report.guarantee, rt::Guarantee::kept) << i;
+            EXPECT_LE(report.worst_weighted_rad, max_error_rad) << i;
+            pictures += report.pictures;
+        }
+        EXPECT_GT(pictures, 0U) << max_error_rad;
+    }
+}
+
+/// A model without a box for pictures is drawn as forms.
+TEST(PictureCache, AModelWithoutBoxesHasNoPictures) {
+    model::Model model = test::forest_model();
+    for (model::Node& node : model.nodes)
+        if (node.child_count == 0) node.box = {};
+    PictureWalk walk(model, {});
+    EXPECT_FALSE(walk.engine().has_pictures());
+    EXPECT_NE(walk.engine().picture_reason(), "");
+}
+
 TEST(PictureCache, IsTheSameAtAnyNumberOfWorkers) {
     PictureWalk one(test::forest_model(), {}), four(test::forest_model(), {.workers = 4});
     for (int i = 0; i < 20; ++i) {

@@ -155,11 +155,10 @@ void add_resolution_message(Session& s) {
             fmt::format("resolution: {:g} % is below the least. {:g} % is drawn.", s.request.resolution_pct, min_pct));
 }
 
-/// Says where the driver holds no pictures of the image cache.
+/// Says where there are no pictures of the image cache.
 void add_cache_message(Session& s) {
-    const gl::Device& device = s.engine->device();
-    if (s.request.cache && device.picture_layers() == 0)
-        s.notes.push_back("cache: The driver cannot hold pictures, so that all is drawn as forms. " + device.picture_reason());
+    if (s.request.cache && !s.engine->has_pictures())
+        s.notes.push_back("cache: There can be no pictures, so that all is drawn as forms. " + s.engine->picture_reason());
 }
 
 /// Says where the driver draws another number of samples.

@@ -1,0 +1,70 @@
+// Room for the pictures of a walk: in a full cache a picture is renewed in its own place, and none goes for nothing.
+#include "render/cache/walk_cache.hpp"
+
+#include <gtest/gtest.h>
+
+namespace surefoot::cache {
+namespace {
+
+/// A row of leaves, 100 m long.
+model::Model row() {
+    model::Model model;
+    model.nodes.resize(9);
+    model.nodes[0].child_count = 8;
+    model.nodes[0].first_child = 1;
+    for (model::Index n = 1; n < 9; ++n) {
+        model.nodes[n].parent = 0;
+        model.nodes[n].box = {dvec3(12.5 * n, 0, 0), dvec3(12.5 * n + 10, 10, 10)};
+        model.nodes[0].box.grow(model.nodes[n].box);
+    }
+    return model;
+}
+
+CacheOffer offer_of(Index box, std::uint32_t texels) {
+    CacheOffer offer;
+    offer.box = box;
+    offer.prospect.picture.texels = texels;
+    return offer;
+}
+
+class WalkCacheRoom : public ::testing::Test {
+protected:
+    void SetUp() override {
+        auto boxes = SceneBoxes::make(row(), {});
+        ASSERT_TRUE(boxes.ok());
+        cache_ = WalkCache(std::move(*boxes), {.layers = 1, .kept_frames = 2});
+    }
+    bool take(Index box, std::uint32_t texels) {
+        cache_.plan({});
+        const bool taken = cache_.take(offer_of(box, texels));
+        if (taken) cache_.captured(box);
+        return taken;
+    }
+    void pass_frames(int count) {
+        for (int i = 0; i < count; ++i) cache_.cover({}, 0);
+    }
+    WalkCache cache_;
+};
+
+TEST_F(WalkCacheRoom, APictureIsRenewedInItsOwnPlace) {
+    ASSERT_TRUE(take(1, 256));
+    EXPECT_TRUE(take(1, 256));
+    EXPECT_FALSE(take(2, 64)) << "a set may rely on the first";
+    EXPECT_TRUE(cache_.held(1).any());
+    EXPECT_TRUE(take(1, 64));
+    EXPECT_TRUE(take(2, 64));
+}
+
+TEST_F(WalkCacheRoom, NothingGoesForAPictureThatHasNoRoom) {
+    ASSERT_TRUE(take(1, 64));
+    pass_frames(4);
+    ASSERT_TRUE(take(2, 64));
+    EXPECT_FALSE(take(3, 256));
+    EXPECT_TRUE(cache_.held(1).any()) << "it would not have been enough";
+    pass_frames(4);
+    EXPECT_TRUE(take(3, 256));
+    EXPECT_FALSE(cache_.held(1).any() || cache_.held(2).any());
+}
+
+}  // namespace
+}  // namespace surefoot::cache
