@@ -230,7 +230,7 @@ bool GlDevice::capture_picture(const CachePicture& picture, std::span<const Draw
     return true;
 }
 
-/// All that wait are one slice, before the picture's own.
+/// Each that waits is a slice, before the picture's own.
 void GlDevice::draw_captures() {
     const std::size_t count = std::exchange(capture_count_, 0);
     if (count == 0 || lost_) return;
@@ -238,15 +238,20 @@ void GlDevice::draw_captures() {
     const mat4 view_projection = view_projection_;
     const PictureMoment shown = shown_;
     const FrameStats stats = stats_;
+    const std::size_t detail = detail_step_;
+    set_texture_detail(0);  // a picture has its own texels
     begin_captures();
-    for (std::size_t i = 0; i < count; ++i) draw_capture(captures_[i]);
+    for (std::size_t i = 0; i < count; ++i) {
+        draw_capture(captures_[i]);
+        end_slice();
+    }
     end_captures();
+    set_texture_detail(detail);
     pose_ = pose;
     view_projection_ = view_projection;
     shown_ = shown;
     stats_ = stats;
     stats_.captures = static_cast<std::uint32_t>(count);
-    end_slice();
 }
 
 void GlDevice::begin_captures() {

@@ -72,6 +72,7 @@ struct CachePicture {
     dvec2 low_m{0.0};                                      ///< on the plane: lower left corner of the square, along right and up
     double side_m = 1;                                     ///< on the plane
     Box box;                                               ///< world: cuts what is captured; its front faces show the picture
+    double grown_m = 0;  ///< the box is so much larger at each face; what is before the smaller one stays before the picture
 };
 
 /// What programs may read of the moment that a picture shows.

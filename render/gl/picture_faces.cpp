@@ -109,6 +109,9 @@ std::size_t add_picture(const CachePicture& picture, const dvec3& eye, std::span
         for (std::size_t end = 0; end < 2; ++end) {
             const double face = (*ends[end])[axis];
             if (!(end == 0 ? eye[axis] < face : eye[axis] > face)) continue;
+            // Each ray ends on the plane of the smaller box's face: that moves no point on the screen.
+            const double inner = face + (end == 0 ? picture.grown_m : -picture.grown_m);
+            const double farther = (inner - eye[axis]) / (face - eye[axis]);
             Polygon polygon;
             bool whole = true;
             for (const unsigned i : {0U, 1U, 3U, 2U}) {
@@ -119,6 +122,7 @@ std::size_t add_picture(const CachePicture& picture, const dvec3& eye, std::span
                 OnPlane on_plane;
                 if (!project(picture, seen, corner, on_plane)) return 0;
                 for (const double at : {on_plane.at.x, on_plane.at.y}) whole = whole && at >= edge && at <= 1 - edge;
+                on_plane.scale /= farther;
                 polygon.add(on_plane);
             }
             for (int across = 0; across < 2 && !whole; ++across) {

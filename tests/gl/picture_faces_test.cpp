@@ -60,5 +60,42 @@ TEST(PictureFaces, show_each_point_of_a_box_once_and_end_with_the_square) {
     EXPECT_GT(points, 8000);
 }
 
+/// What stands before the box as it was before it grew stays before the picture.
+TEST(PictureFaces, of_a_grown_box_lie_on_the_planes_of_the_smaller_one) {
+    Random random(5);
+    std::array<gl::PictureVertex, gl::max_picture_vertices> to, plain;
+    int seen = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const dvec3 middle = any_in(random, dvec3(-10), dvec3(10)), half = any_in(random, dvec3(0.1), dvec3(3));
+        const dvec3 eye = any_in(random, dvec3(-20), dvec3(20));
+        const double grown_m = any_in(random, dvec3(0), dvec3(1)).x;
+        const Box small{middle - half, middle + half}, box{small.min - dvec3(grown_m), small.max + dvec3(grown_m)};
+        gl::CachePicture picture = picture_from(box, eye, {0, 0, 0, 128});
+        const std::size_t count = gl::add_picture(picture, eye, plain);
+        picture.grown_m = grown_m;
+        ASSERT_EQ(gl::add_picture(picture, eye, to), count);
+        seen += count > 0 ? 1 : 0;
+        for (std::size_t v = 0; v < count; v += 3) {
+            bool on_face = false;
+            for (int axis = 0; axis < 3; ++axis) {
+                for (const dvec3& end : {small.min, small.max}) {
+                    bool all = true;
+                    for (std::size_t c = v; c < v + 3; ++c)
+                        all = all &&
+                              std::abs(eye[axis] + double{to[c].place[static_cast<std::size_t>(axis)]} / double{to[c].place[3]} -
+                                       end[axis]) < 1e-4;
+                    on_face = on_face || all;
+                }
+            }
+            ASSERT_TRUE(on_face) << i;
+            for (std::size_t c = v; c < v + 3; ++c) {
+                for (const std::size_t axis : {0U, 1U, 2U}) ASSERT_EQ(to[c].place[axis], plain[c].place[axis]) << "the same ray";
+                ASSERT_EQ(to[c].at, plain[c].at);
+            }
+        }
+    }
+    EXPECT_GT(seen, 1000);
+}
+
 }  // namespace
 }  // namespace surefoot::test
