@@ -184,6 +184,8 @@ TEST(PictureCache, NoRoomForAPictureMeansNoPicture) {
 TEST(PictureCache, NewPicturesAreBoughtWithinTheBudgetAndCharged) {
     for (const char* selector : {"best-first", "curve-budget", "threshold"}) {
         PictureWalk walk(test::forest_model(), {.selector = selector});
+        gl::Device& device = walk.engine().device();
+        device.draws.plays();
         const double full_us = walk.frame(along(walk.engine(), 0)).predicted_us, budget_us = 0.6 * full_us;
         std::uint32_t made = 0;
         for (int i = 1; i < 30; ++i) {
@@ -195,6 +197,12 @@ TEST(PictureCache, NewPicturesAreBoughtWithinTheBudgetAndCharged) {
                 << "forms are priced for a region";
             EXPECT_TRUE(holes(walk.engine(), pose).empty()) << selector << ' ' << i;
             made += report.pictures_made;
+            double captures_us = 0;
+            for (const select::Item& item : walk.engine().offered().offered())
+                if (item.kind == select::ItemKind::refresh && walk.engine().bought(item.kind, item.what))
+                    captures_us += static_cast<double>(item.cost_us);
+            EXPECT_NEAR(report.captures_us, captures_us, 1e-3) << selector << ' ' << i;
+            EXPECT_EQ(device.stats().captures, report.pictures_made);
         }
         EXPECT_GT(made, 0U) << selector;
     }
