@@ -190,10 +190,10 @@ TEST(PictureCache, NewPicturesAreBoughtWithinTheBudgetAndCharged) {
         std::uint32_t made = 0;
         for (int i = 1; i < 30; ++i) {
             const Pose pose = along(walk.engine(), i);
-            const double before_us = walk.engine().device().charged_us();
+            const double before_us = device.charged_us();
             const SubmitReport report = walk.frame(pose, budget_us);
             EXPECT_LE(report.predicted_us, budget_us) << selector << ' ' << i;
-            EXPECT_NEAR(walk.engine().device().charged_us() - before_us, report.predicted_us, 2e-2 * report.predicted_us)
+            EXPECT_NEAR(device.charged_us() - before_us, report.predicted_us, 2e-2 * report.predicted_us)
                 << "forms are priced for a region";
             EXPECT_TRUE(holes(walk.engine(), pose).empty()) << selector << ' ' << i;
             made += report.pictures_made;
