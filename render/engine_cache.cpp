@@ -19,7 +19,7 @@ constexpr double may_turn_rad = 0.1;     // while a picture lives, beyond what t
 constexpr double jump_m = 2;             // in a frame: no course leads there
 constexpr double unlimited_share = 0.1;  // of the budget, for new pictures where nothing limits what a frame spends
 constexpr double limited_share = 0.25;   // the same where forms compete with them
-constexpr double most_share = 1.0 / 16;  // of the budget, for one picture: what a slice may take
+constexpr double max_share = 1.0 / 16;   // of the budget, for one picture: what a slice may take
 constexpr double usual_budget_us = 33'333;
 constexpr double value_share = 1e-5;             // of the picture: of what saves time that nothing else can use
 constexpr std::uint32_t first_picture_item = 1;  // of ItemKind::refresh; the shadow map is below
@@ -152,7 +152,7 @@ void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const selec
     view.view_px = 1.0 * viewport.width * viewport.height;
     view.combine = combine();
     const double budget_us = std::isfinite(input.budget_us) ? input.budget_us : usual_budget_us;
-    view.max_price_us = most_share * budget_us;
+    view.max_price_us = max_share * budget_us;
     const std::span<const cache::CacheOffer> plan_of_pictures = pictures.plan(view);
     if (plan_of_pictures.empty()) return;
     const auto room_us = static_cast<float>(select::Budget(input).room_us());

@@ -80,10 +80,10 @@ Result<SceneBoxes> SceneBoxes::make(const model::Model& model, const std::vector
     boxes.find_contents(leaves, excluded);
     for (Index i = 0; i < boxes.size(); ++i) {
         const std::span<const Index> shown = boxes.leaves(i);
-        const auto most = std::max_element(
+        const auto first = std::max_element(
             shown.begin(), shown.end(), [&](Index a, Index b) { return model.nodes[a].importance < model.nodes[b].importance; });
-        boxes.important_.push_back(most == shown.end() ? none : *most);
-        boxes.importance_.push_back(most == shown.end() ? 0.0F : model.nodes[*most].importance);
+        boxes.important_.push_back(first == shown.end() ? none : *first);
+        boxes.importance_.push_back(first == shown.end() ? 0.0F : model.nodes[*first].importance);
     }
     for (auto n = static_cast<Index>(model.nodes.size()); n-- > 1;)  // children come after their parents
         if (boxes.node_boxes_[n].empty() && model.nodes[n].parent != model::none) boxes.node_boxes_[model.nodes[n].parent] = {};
