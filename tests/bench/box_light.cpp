@@ -140,7 +140,8 @@ nlohmann::ordered_json nodes_report(const BoxBench& bench, const std::vector<mod
             Compared of_node;
             for (int view = 0; view < 56; ++view) {
                 const bool face = view >= 50;
-                dvec3 towards = direction(0.628 * (view % 10) + 0.11 * (view / 10), 0.04 + 0.3 * (view / 10));
+                const int ring = view / 10;
+                dvec3 towards = direction(0.628 * (view % 10) + 0.11 * ring, 0.04 + 0.3 * ring);
                 if (face) towards = dvec3(0), towards[(view - 50) / 2] = view % 2 == 0 ? 1 : -1;
                 const Pose pose = pose_at(node.box, towards, face ? 60 : 24 + 18 * (view % 5));
                 const Compared one =

@@ -244,9 +244,8 @@ std::array<gl::CachePicture, 2> halves_from(const dvec3& eye, std::array<gl::Pic
 PictureScene full_colours() {
     std::vector<ColouredSquare> all;
     for (int i = 0; i < 15; ++i) {
-        const int colour = i % 7 + 1;
-        all.push_back(
-            {vec3(colour & 1, colour / 2 & 1, colour / 4), dvec3(-0.8 + 0.4 * (i % 5), -0.5 + 0.5 * (i / 5), -6.2), 0.2F});
+        const int colour = i % 7 + 1, row = i / 5;
+        all.push_back({vec3(colour & 1, colour / 2 & 1, colour / 4), dvec3(-0.8 + 0.4 * (i % 5), -0.5 + 0.5 * row, -6.2), 0.2F});
     }
     all.push_back({vec3(1, 0, 0), dvec3(-0.5, 0.1, -5.7), 0.15F});
     all.push_back({vec3(0, 1, 1), dvec3(0.3, -0.3, -5.5), 0.2F});
