@@ -1,6 +1,6 @@
 // Effect: captured pictures of boxes in the light of the moment. What they are captured from looks many ways, so no normal
-// serves: bake adds up how much of the sun at each moment, of sky, ground, rooms and lamps falls on it. Lamps differ by corner, so
-// colours are interpolated: it is priced as the sun is.
+// serves: bake adds up how much of the sun at each moment, of sky, ground, rooms and lamps falls on it. Lamps differ by corner,
+// so colours are interpolated: it is priced as the sun is.
 #include <algorithm>
 
 #include "render/effects/modules.hpp"
