@@ -121,6 +121,13 @@ const model::CoverBits& Engine::cover(const Pose& now, const prepare::Region& ne
                                            std::min(way_m, next.radius_m));
 }
 
+/// Predicted, to draw a box's picture at the resolution that is drawn.
+double Engine::Impl::picture_us(cache::Index box, const Pose& pose) const {
+    const model::Viewport viewport = options.device.viewport;
+    const double pixel_rad = model::pixel_angle(pose, viewport) / static_cast<double>(drawn_resolution);
+    return static_cast<double>(pictures.draw_us(box, pose.position, pixel_rad, 1.0 * viewport.width * viewport.height));
+}
+
 /// The pictures of the set are drawn whatever else is. Their price is part of all predictions.
 void Engine::Impl::prepay_pictures(const prepare::PreparedFrame& set) {
     pictures_us = 0;
@@ -130,10 +137,8 @@ void Engine::Impl::prepay_pictures(const prepare::PreparedFrame& set) {
     const Pose& pose = set.region.centre;
     const model::Viewport viewport = options.device.viewport;
     const model::Frustum seen = model::make_frustum(pose, viewport, model::far_corners_m(model.nodes[0].box));
-    const double pixel_rad = model::pixel_angle(pose, viewport) / static_cast<double>(drawn_resolution);
-    const double view_px = 1.0 * viewport.width * viewport.height;
     for (const cache::Index box : pictures.draws(set.covered, cache::view_pixels(pose, viewport), seen).boxes)
-        pictures_us += static_cast<double>(pictures.draw_us(box, pose.position, pixel_rad, view_px));
+        pictures_us += picture_us(box, pose);
     if (pictures_us > 0) offered.prepay({select::ItemKind::pictures, 0, static_cast<float>(pictures_us), 0});
 }
 
@@ -258,11 +263,9 @@ void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, 
     pictures_without = drawn_without();
     const model::Viewport viewport = options.device.viewport;
     const cache::CacheDraws& draws_now = pictures.draws(prepared->covered, cache::view_pixels(pose, viewport), frustum);
-    const double pixel_rad = model::pixel_angle(pose, viewport) / static_cast<double>(drawn_resolution);
-    const double view_px = 1.0 * viewport.width * viewport.height;
     for (const cache::Index box : draws_now.boxes) {
         shown_pictures.push_back(to_device(pictures.held(box)));
-        report.pictures_us += static_cast<double>(pictures.draw_us(box, pose.position, pixel_rad, view_px));
+        report.pictures_us += picture_us(box, pose);
     }
     const double left_us = left_for_uncovered_us(limits) - report.pictures_us, coarse_us = find_uncovered(pose, left_us);
     if (!uncovered.empty() && coarse_us > left_us) {

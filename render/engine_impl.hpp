@@ -170,6 +170,7 @@ struct Engine::Impl {
         return use_last ? 0.0 : cut.bought.cost_us - (filtered ? static_cast<double>(filter_us) : 0.0) - lever.spent_us;
     }
     void make_pictures() REQUIRES(draws);
+    [[nodiscard]] double picture_us(cache::Index box, const Pose& pose) const REQUIRES(draws);
     void prepay_pictures(const prepare::PreparedFrame& set) REQUIRES(draws);
     void offer_pictures(const prepare::PreparedFrame& set, const select::SelectInput& input) REQUIRES(draws);
     void take_pictures() REQUIRES(draws);
