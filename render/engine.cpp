@@ -354,7 +354,24 @@ void Engine::select_last() {
     impl_->dwell.answer(false);
 }
 
+/// Begins a picture, and draws all of its items.
+void Engine::Impl::draw_items(const Pose& pose, std::span<const gl::DrawItem> items, float at_resolution) {
+    device->draws.plays();
+    device->begin_frame(pose, at_resolution);
+    constexpr std::size_t chunk = 4096;  // below the device's max_items, and bounded work a slice
+    for (std::size_t at = 0; at < items.size(); at += chunk) {
+        device->draw(items.subspan(at, std::min(chunk, items.size() - at)));
+        device->end_slice();
+        device->wait_slices(1);
+    }
+}
+
 void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution, rt::TextureFilter filter) {
+    draw_unbudgeted(pose, items, {}, resolution, filter);
+}
+
+void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, std::span<const ShownPicture> pictures,
+                             float resolution, rt::TextureFilter filter) {
     gl::Device& device = *impl_->device;
     device.draws.plays();
     impl_->draws.plays();
@@ -363,12 +380,11 @@ void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> ite
     device.show_shadow(std::exchange(impl_->shadow_unbudgeted, false));
     device.set_filter(filter == rt::TextureFilter::automatic ? impl_->best_filter : filter);
     device.hide_effects(impl_->hidden);
-    device.begin_frame(pose, resolution);
-    constexpr std::size_t chunk = 4096;  // below the device's max_items, and bounded work a slice
-    for (std::size_t at = 0; at < items.size(); at += chunk) {
-        device.draw(items.subspan(at, std::min(chunk, items.size() - at)));
+    impl_->make_pictures_anew(pose, pictures);
+    impl_->draw_items(pose, items, resolution);
+    if (!impl_->shown_pictures.empty()) {
+        device.draw_pictures(impl_->shown_pictures);
         device.end_slice();
-        device.wait_slices(1);
     }
     device.end_items();
     device.finish_frame();

@@ -125,6 +125,12 @@ struct SubmitReport {
     float floor_share = 0;  ///< of the drawn pixels, as estimated: those in the cheapest forms of nodes that have finer ones
 };
 
+/// A picture of the image cache in a frame, and the box of the cache that it shows.
+struct ShownPicture {
+    gl::CachePicture picture;
+    std::uint32_t box = 0;
+};
+
 /// A model, a device and the arrays between them. prepare() may run on any one thread at a time; all other calls belong to the
 /// thread that called bind(). After open() nothing allocates, except the driver and the calls that say so.
 class Engine {
@@ -196,8 +202,10 @@ public:
     [[nodiscard]] std::span<const gl::DrawItem> culled() const;
     /// Pictures of the image cache in the last submit(), back to front; valid as long.
     [[nodiscard]] std::span<const gl::CachePicture> pictures() const;
-    /// Adds to drawn() the full detail that these pictures stand for, so that it may be drawn again without them.
-    void draw_pictures_as_forms();
+    /// The same, so that the frame may be drawn again later.
+    [[nodiscard]] std::span<const ShownPicture> shown_pictures() const;
+    /// Maximum number of pictures in a frame.
+    [[nodiscard]] std::size_t picture_capacity() const;
     /// Whether the last submit() fell to the floor without need. Over half of its picture shows floor forms where the cut before
     /// had finer ones. And what of that cut is in view now would have been done within `time_us` from the call, by `correction`.
     /// Takes a microsecond, or up to a millisecond where much of the picture is at the floor: call it after the frame.
@@ -216,6 +224,10 @@ public:
     /// that frames may have.
     void draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution = 1,
                          rt::TextureFilter filter = rt::TextureFilter::automatic);
+    /// The same with pictures of the image cache, as a frame showed them. They are made anew, in the light that is set, over
+    /// those of the walk: a walk that goes on begins without any.
+    void draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, std::span<const ShownPicture> pictures,
+                         float resolution, rt::TextureFilter filter);
     /// Every visible leaf at full detail, for draw_unbudgeted; allocates.
     [[nodiscard]] std::vector<gl::DrawItem> full_detail(const Pose& pose) const;
 

@@ -199,9 +199,7 @@ void Engine::Impl::capture_pictures(SubmitReport& report) {
         const select::Item& item = offered.offered()[i];
         if (item.kind != select::ItemKind::refresh || item.what < first_picture_item || !cut.bought.has(i)) continue;
         const cache::Index box = item.what - first_picture_item;
-        const std::span<const gl::DrawItem> items =
-            std::span(picture_items).subspan(pictures.boxes().first_node(box), pictures.boxes().nodes(box).size());
-        if (pictures.is_pending(box) && device->capture_picture(to_device(pictures.held(box)), items)) {
+        if (pictures.is_pending(box) && device->capture_picture(to_device(pictures.held(box)), contents_of(box))) {
             ++report.pictures_made;
             report.captures_us += static_cast<double>(item.cost_us);
             pictures.captured(box);
@@ -253,7 +251,6 @@ double Engine::Impl::left_for_uncovered_us(const SubmitLimits& limits) const {
 /// place, no prepared set may be used.
 void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, SubmitReport& report) {
     after_us = pictures_value = 0;
-    pictures_as_forms = false;
     shown_pictures.clear();
     shown_boxes.clear();
     uncovered.clear();
@@ -264,7 +261,8 @@ void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, 
     const model::Viewport viewport = options.device.viewport;
     const cache::CacheDraws& draws_now = pictures.draws(prepared->covered, cache::view_pixels(pose, viewport), frustum);
     for (const cache::Index box : draws_now.boxes) {
-        shown_pictures.push_back(to_device(pictures.held(box)));
+        shown_boxes.push_back({to_device(pictures.held(box)), box});
+        shown_pictures.push_back(shown_boxes.back().picture);
         report.pictures_us += picture_us(box, pose);
     }
     const double left_us = left_for_uncovered_us(limits) - report.pictures_us, coarse_us = find_uncovered(pose, left_us);
@@ -272,11 +270,10 @@ void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, 
         report.uncovered_items = static_cast<std::uint32_t>(uncovered.size());
         report.pictures_us = 0;
         shown_pictures.clear();
+        shown_boxes.clear();
         use_last = true;
         return;
     }
-    shown_boxes.insert(shown_boxes.end(), draws_now.boxes.begin(), draws_now.boxes.end());
-    shown_set = prepared->covered;
     report.pictures = static_cast<std::uint32_t>(shown_pictures.size());
     for (const cache::Index box : draws_now.boxes) {
         const double error_rad = cache::picture_errors(pictures.held(box).picture, pose.position).total();
@@ -323,25 +320,36 @@ void Engine::Impl::draw_uncovered(const SubmitLimits& limits, double start_us, m
     }
 }
 
-void Engine::draw_pictures_as_forms() {
-    Impl& e = *impl_;
-    e.draws.plays();
-    if (!e.pictures.any() || e.shown_pictures.empty() || std::exchange(e.pictures_as_forms, true)) return;
-    const std::size_t first = e.drawn.size();
-    for (const cache::Index box : e.shown_boxes) {
-        for (const model::Index n : e.pictures.boxes().leaves(box)) {
-            const model::Node& node = e.model.nodes[n];
-            if (e.is_uncovered[n] || !e.pictures.boxes().covered(n, e.shown_set) || !e.in_view(n)) continue;
-            if (!push_within(e.drawn, {n, node.first_rep + node.rep_count - 1})) break;
-            e.is_uncovered[n] = true;
+/// Over those of the walk, which are forgotten. As many as a frame takes are captured by a frame of their own.
+void Engine::Impl::make_pictures_anew(const Pose& pose, std::span<const ShownPicture> shown) {
+    device->draws.plays();
+    shown_pictures.clear();
+    if (shown.empty() || !pictures.any()) return;
+    pictures.clear();
+    for (std::size_t i = 0; i < std::min(shown.size(), shown_pictures.capacity()); ++i) {
+        shown_pictures.push_back(shown[i].picture);
+        if (i > 0 && i % gl::max_captures == 0) {
+            draw_items(pose, {}, 1);
+            device->end_items();
+            device->finish_frame();
         }
+        device->capture_picture(shown[i].picture, contents_of(shown[i].box));
     }
-    for (std::size_t i = first; i < e.drawn.size(); ++i) e.is_uncovered[e.drawn[i].node] = false;
 }
 
 std::span<const gl::CachePicture> Engine::pictures() const {
     impl_->draws.plays();
     return impl_->rest_picture.samples() > 0 ? std::span<const gl::CachePicture>() : impl_->shown_pictures;
+}
+
+std::span<const ShownPicture> Engine::shown_pictures() const {
+    impl_->draws.plays();
+    return impl_->rest_picture.samples() > 0 ? std::span<const ShownPicture>() : impl_->shown_boxes;
+}
+
+std::size_t Engine::picture_capacity() const {
+    impl_->draws.plays();
+    return impl_->shown_boxes.capacity();
 }
 
 void Engine::Impl::draw_pictures(SubmitReport& report) {

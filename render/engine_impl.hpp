@@ -82,15 +82,13 @@ struct Engine::Impl {
     bool shadow_unbudgeted GUARDED_BY(draws) = false;  ///< draw_unbudgeted() is to show it
     bool course_known GUARDED_BY(draws) = false;
     bool rests GUARDED_BY(draws) = false;                      ///< the last submit() was at rest
-    bool pictures_as_forms GUARDED_BY(draws) = false;          ///< drawn has what they show, too
     model::EffectMask pictures_without GUARDED_BY(draws) = 0;  ///< effects that the pictures were drawn without
     static constexpr std::uint32_t shadow_item = 0;            ///< the refresh that it is
     cache::WalkCache pictures GUARDED_BY(draws);               ///< none where the device has no layers
     std::vector<gl::DrawItem> picture_items;  ///< full detail of what lies in each box, as in SceneBoxes::nodes()
     std::string picture_reason;               ///< why there are none
     std::vector<gl::CachePicture> shown_pictures GUARDED_BY(draws);
-    std::vector<cache::Index> shown_boxes GUARDED_BY(draws);  ///< of shown_pictures
-    model::CoverBits shown_set GUARDED_BY(draws);             ///< of the set that they are of
+    std::vector<ShownPicture> shown_boxes GUARDED_BY(draws);  ///< the same, with their boxes
     std::vector<UncoveredItem> uncovered GUARDED_BY(draws);   ///< leaves whose pictures are not valid
     std::vector<bool> is_uncovered GUARDED_BY(draws);         ///< by node; all false between frames
     model::CoverBits cover_bits GUARDED_BY(draws);
@@ -181,6 +179,11 @@ struct Engine::Impl {
     void draw_uncovered(const SubmitLimits& limits, double start_us, model::ItemCost& so_far, SubmitReport& report)
         REQUIRES(draws);
     void draw_pictures(SubmitReport& report) REQUIRES(draws);
+    [[nodiscard]] std::span<const gl::DrawItem> contents_of(cache::Index box) const {
+        return std::span(picture_items).subspan(pictures.boxes().first_node(box), pictures.boxes().nodes(box).size());
+    }
+    void make_pictures_anew(const Pose& pose, std::span<const ShownPicture> shown) REQUIRES(draws);
+    void draw_items(const Pose& pose, std::span<const gl::DrawItem> items, float at_resolution) REQUIRES(draws);
     [[nodiscard]] ShadowScene shadow_scene() REQUIRES(draws);
     void offer_shadow(const prepare::PreparedFrame& set) REQUIRES(draws);
     void take_shadow() REQUIRES(draws);

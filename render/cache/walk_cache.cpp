@@ -105,6 +105,12 @@ void WalkCache::drop(Index box) {
     captured(box);
 }
 
+void WalkCache::clear() {
+    for (Index i = 0; i < held_.size(); ++i)
+        if (held_[i].any()) drop(i);
+    pending_.clear();
+}
+
 WalkCache::Cone WalkCache::cone_of(const Box& box, const dvec3& eye) {
     const dvec3 to = box.centre() - eye;
     const double distance = glm::length(to), radius = 0.5 * box.diagonal();

@@ -104,6 +104,8 @@ public:
     void captured(Index box);
     void drop_pending();
     void drop(Index box);
+    /// Drops all pictures: their slots hold something else.
+    void clear();
 
     /// What a frame draws for a covered set: the largest valid pictures in view, back to front. No eye but one: radius 0. Valid
     /// until the next call.

@@ -71,6 +71,7 @@ private:
     Result<void> samples(Calibration& out);
     Result<void> filter(Calibration& out);
     void background(Calibration& out);
+    void pictures(Calibration& out);
     Result<std::unique_ptr<gl::Device>> open_other(const gl::DeviceOptions& how);
     std::vector<WorkPair> compare(gl::Device& other, bool textured);
     std::vector<EmptyPair> empty_frames(gl::Device& other);
@@ -241,6 +242,73 @@ void Run::background(Calibration& out) {
     if (ns) out.costs.background_ns_per_pixel = *ns;
 }
 
+/// A picture of a wall that faces Pose{}, at a depth of 15 m.
+gl::CachePicture wall_picture(std::uint32_t texels, const dvec2& low_m, const dvec2& high_m) {
+    constexpr double depth_m = 15;
+    gl::CachePicture picture;
+    picture.place.texels = static_cast<std::uint16_t>(texels);
+    picture.plane_m = depth_m;
+    picture.low_m = low_m;
+    picture.side_m = std::max(high_m.x - low_m.x, high_m.y - low_m.y);
+    picture.box = {dvec3(low_m * depth_m, -1.001 * depth_m), dvec3(high_m * depth_m, -depth_m)};
+    picture.low_m *= depth_m;
+    picture.side_m *= depth_m;
+    return picture;
+}
+
+/// Pictures that fill a frame several times, about a texel a pixel at usual sizes.
+std::vector<gl::CachePicture> wall_of_pictures(const model::Viewport& viewport) {
+    constexpr int columns = 5, rows = 3;
+    static_assert(columns * rows * PictureTimes::fills == PictureTimes::wide);
+    const double up = std::tan(0.5 * Pose{}.fov_y_rad), right = up * viewport.width / viewport.height;
+    std::vector<gl::CachePicture> all;
+    for (int i = 0; i < PictureTimes::wide; ++i) {
+        const dvec2 size(2 * right / columns, 2 * up / rows);
+        const dvec2 low = dvec2(-right, -up) + size * dvec2(i % columns, i / columns % rows);
+        all.push_back(wall_picture(PictureTimes::large_texels, low, low + size));
+        all.back().place.layer = static_cast<std::uint16_t>(i % (columns * rows));
+    }
+    return all;
+}
+
+/// What pictures of the image cache add to an empty frame: by their number and pixels, and new ones by their number and texels.
+/// Where no second device has them, the constants stay.
+void Run::pictures(Calibration& out) {
+    if (options_.device.kind == gl::BackendKind::null) return;  // charges what the table says
+    gl::DeviceOptions how = options_.device;
+    how.picture_layers = PictureTimes::captures;
+    auto opened = open_other(how);
+    if (!opened || (*opened)->picture_layers() == 0) return;
+    gl::Device& other = **opened;
+    other.bind();
+    other.draws.plays();
+    const gl::CachePicture small = wall_picture(PictureTimes::small_texels, dvec2(-1e-3), dvec2(1e-3));
+    const std::vector<gl::CachePicture> many(PictureTimes::count, small), wide = wall_of_pictures(options_.device.viewport);
+    const auto beyond_empty = [&](std::span<const gl::CachePicture> drawn, std::uint32_t captured_texels) {
+        other.draws.plays();
+        const auto frame = [&](bool with) {
+            other.draws.plays();
+            gl::CachePicture made = wall_picture(captured_texels, dvec2(-0.1), dvec2(0.1));
+            for (int i = 0; with && captured_texels > 0 && i < PictureTimes::captures; ++i) {
+                made.place.layer = static_cast<std::uint16_t>(i);
+                other.capture_picture(made, {});
+            }
+            return run_frame(other, clocks_, Pose{}, {}, 1, 1, with ? drawn : std::span<const gl::CachePicture>()).wall_us;
+        };
+        const double empty_us = frame(false);
+        return frame(true) - empty_us;
+    };
+    PictureTimes times;
+    for (int i = 0; i < 10 * repeats(); ++i) {
+        times.many_us.push_back(beyond_empty(many, 0));
+        times.wide_us.push_back(beyond_empty(wide, 0));
+        times.small_us.push_back(beyond_empty({}, PictureTimes::small_texels));
+        times.large_us.push_back(beyond_empty({}, PictureTimes::large_texels));
+    }
+    other.release();
+    (void)price_pictures(times, options_.device.viewport, out.costs);
+}
+
 /// What each sample of a pixel beyond the first adds: to items, and to an empty frame. A driver without keeps the constants.
 Result<void> Run::samples(Calibration& out) {
     gl::DeviceOptions how = options_.device;
@@ -283,6 +351,9 @@ Result<void> Run::levers(Calibration& out) {
     if (progress_.stopped()) return stopped;
     progress_.update("background", 0.9);
     background(out);
+    if (progress_.stopped()) return stopped;
+    progress_.update("pictures", 0.95);
+    pictures(out);
     device_.bind();
     return {};
 }

@@ -58,6 +58,11 @@ constexpr double max_effect_ns_per_triangle = 1e5;
 /// Of CostModel::sample_share, sample_pass_ns_per_pixel and trilinear_factor.
 constexpr double max_sample_share = 4, max_sample_pass_ns = 100, max_trilinear_factor = 4;
 
+/// Of CostModel::picture_us and capture_us. Nothing is free.
+constexpr double min_picture_us = 0.01, max_picture_us = 1e5;
+/// Least of CostModel::picture_ns_per_pixel and capture_ns_per_texel.
+constexpr double min_picture_ns = 0.01;
+
 /// Equal for equal tables. Tells from which table a fit to a model was made.
 std::uint64_t hash_of(const model::CostModel& costs);
 /// The table as a file: TOML text with a checksum in its first line.

@@ -38,6 +38,19 @@ constexpr std::array<PriceKey, 3> price_keys = {{
     {"raster_ns_per_pixel", &model::EffectPrice::raster_ns_per_pixel, max_ns_per_pixel},
 }};
 
+/// A figure of the image cache in the file.
+struct PictureKey {
+    std::string_view name;
+    float model::CostModel::*of;
+    double min, max;
+};
+constexpr std::array<PictureKey, 4> picture_keys = {{
+    {"picture_us", &model::CostModel::picture_us, min_picture_us, max_picture_us},
+    {"picture_ns_per_pixel", &model::CostModel::picture_ns_per_pixel, min_picture_ns, max_ns_per_pixel},
+    {"capture_us", &model::CostModel::capture_us, min_picture_us, max_picture_us},
+    {"capture_ns_per_texel", &model::CostModel::capture_ns_per_texel, min_picture_ns, max_ns_per_pixel},
+}};
+
 std::string hash_text(std::string_view body) {
     return fmt::format("{:016x}", hash_bytes(std::as_bytes(std::span<const char>(body))));
 }
@@ -75,6 +88,9 @@ std::string body_of(const model::CostModel& costs) {
                             static_cast<double>(costs.sample_pass_ns_per_pixel));
     if (costs.background_measured)
         text += fmt::format("background_ns_per_pixel = {:.9g}\n", static_cast<double>(costs.background_ns_per_pixel));
+    if (costs.pictures_measured)
+        for (const PictureKey& key : picture_keys)
+            text += fmt::format("{} = {:.9g}\n", key.name, static_cast<double>(costs.*key.of));
     if (costs.trilinear_measured) text += fmt::format("trilinear_factor = {:.9g}\n", static_cast<double>(costs.trilinear_factor));
     if (costs.ns_per_pixel > 0) text += fmt::format("ns_per_pixel = {:.9g}\n", static_cast<double>(costs.ns_per_pixel));
     if (costs.filter != rt::TextureFilter::automatic)
@@ -150,6 +166,12 @@ void read_levers(TableReader& top, model::CostModel& costs) {
         costs.filter = filter == 0 ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear;
     }
     costs.background_measured = read_measured(top, "background_ns_per_pixel", 0, max_enlarge_ns, costs.background_ns_per_pixel);
+    std::size_t pictures = 0;
+    for (const PictureKey& key : picture_keys)
+        pictures += read_measured(top, key.name, key.min, key.max, costs.*key.of) ? 1U : 0U;
+    costs.pictures_measured = pictures == picture_keys.size();
+    for (const PictureKey& key : picture_keys)
+        if (pictures > 0 && !top.has(key.name)) top.refuse(key.name, "is missing", remedy);
     costs.trilinear_measured = read_measured(top, "trilinear_factor", 1, max_trilinear_factor, costs.trilinear_factor);
 }
 

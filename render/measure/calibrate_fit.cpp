@@ -253,6 +253,29 @@ std::optional<float> enlarge_ns_of(std::span<const EmptyPair> pairs, const model
     return static_cast<float>(std::clamp(median_of(std::move(added_ns)) / pixels, min_ns, max_enlarge_ns));
 }
 
+bool price_pictures(const PictureTimes& times, const model::Viewport& picture, model::CostModel& costs) {
+    const auto typical = [](const std::vector<double>& all) {
+        const bool sound = !all.empty() && std::all_of(all.begin(), all.end(), [](double us) { return std::isfinite(us); });
+        return sound ? median_of(std::vector<double>(all)) : std::numeric_limits<double>::quiet_NaN();
+    };
+    const double pixels = static_cast<double>(picture.width) * static_cast<double>(picture.height);
+    const double one_us = typical(times.many_us) / PictureTimes::count;
+    const double pixel_ns = 1e3 * (typical(times.wide_us) - PictureTimes::wide * one_us) / (PictureTimes::fills * pixels);
+    const double small_us = typical(times.small_us) / PictureTimes::captures;
+    const double large_us = typical(times.large_us) / PictureTimes::captures;
+    constexpr double small_area = 1.0 * PictureTimes::small_texels * PictureTimes::small_texels;
+    constexpr double large_area = 1.0 * PictureTimes::large_texels * PictureTimes::large_texels;
+    const double texel_ns = 1e3 * (large_us - small_us) / (large_area - small_area);
+    const double capture_us = small_us - 1e-3 * std::max(0.0, texel_ns) * small_area;
+    if (!std::isfinite(pixel_ns) || !std::isfinite(texel_ns)) return false;
+    costs.picture_us = static_cast<float>(std::clamp(one_us, min_picture_us, max_picture_us));
+    costs.picture_ns_per_pixel = static_cast<float>(std::clamp(pixel_ns, min_picture_ns, max_ns_per_pixel));
+    costs.capture_us = static_cast<float>(std::clamp(capture_us, min_picture_us, max_picture_us));
+    costs.capture_ns_per_texel = static_cast<float>(std::clamp(texel_ns, min_picture_ns, max_ns_per_pixel));
+    costs.pictures_measured = true;
+    return true;
+}
+
 std::optional<float> dearer_factor_of(std::span<const WorkPair> pairs, double max) {
     std::vector<double> ratios;
     for (const WorkPair& pair : pairs) {

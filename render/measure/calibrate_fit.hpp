@@ -57,6 +57,19 @@ struct EmptyPair {
 /// within 0.01 to max_enlarge_ns. Nothing if there are no pixels or no pairs, or if a time is not finite.
 std::optional<float> enlarge_ns_of(std::span<const EmptyPair> pairs, const model::Viewport& picture);
 
+/// What frames take longer than empty ones, each drawn right after one: by pictures of the image cache. us.
+struct PictureTimes {
+    std::vector<double> many_us;   ///< with `count` drawn pictures of a pixel
+    std::vector<double> wide_us;   ///< with `wide` pictures that fill the frame `fills` times
+    std::vector<double> small_us;  ///< with `captures` new pictures of `small_texels` a side, without contents
+    std::vector<double> large_us;  ///< the same of `large_texels`
+    static constexpr int count = 64, wide = 60, fills = 4, captures = 16;
+    static constexpr std::uint32_t small_texels = 64, large_texels = 256;
+};
+/// Prices of pictures: by their medians. Nothing is free, since noise must not make it so. False: a time is not finite or there
+/// are none, and `costs` is as before.
+bool price_pictures(const PictureTimes& times, const model::Viewport& picture, model::CostModel& costs);
+
 /// The same work drawn in two ways, one right after the other.
 struct WorkPair {
     double plain_us = 0, dearer_us = 0;  ///< raster time, without that of an empty frame

@@ -29,13 +29,18 @@ RasteriserClocks::RasteriserClocks() {
 }
 
 FrameTiming run_frame(gl::Device& device, RasteriserClocks& rasterisers, const Pose& pose, std::span<const gl::DrawItem> items,
-                      std::size_t slice_items, float resolution) {
+                      std::size_t slice_items, float resolution, std::span<const gl::CachePicture> pictures) {
     rasterisers.start();
     const std::int64_t cpu = rt::own_cpu_ns();
     const std::int64_t wall = rt::monotonic_ns();
     device.begin_frame(pose, resolution);
     for (std::size_t i = 0; i < items.size(); i += slice_items) {
         device.draw(items.subspan(i, std::min(slice_items, items.size() - i)));
+        device.end_slice();
+        device.wait_slices(1);
+    }
+    if (!pictures.empty()) {
+        device.draw_pictures(pictures);
         device.end_slice();
         device.wait_slices(1);
     }

@@ -27,9 +27,11 @@ private:
     rt::ThreadClocks clocks_;
 };
 
-/// Draws the items in slices of slice_items, at most one slice ahead of the rasterisers. The engine's slices are longer.
+/// Draws the items in slices of slice_items, at most one slice ahead of the rasterisers. The engine's slices are longer. Then
+/// pictures of the image cache, as one slice.
 FrameTiming run_frame(gl::Device& device, RasteriserClocks& rasterisers, const Pose& pose, std::span<const gl::DrawItem> items,
-                      std::size_t slice_items, float resolution = 1) REQUIRES(device.draws);
+                      std::size_t slice_items, float resolution = 1, std::span<const gl::CachePicture> pictures = {})
+    REQUIRES(device.draws);
 
 /// Measures the same work by timer query and by wall time. Draws `items` as one slice.
 TimerQueryCheck check_timer(gl::Device& device, const Pose& pose, std::span<const gl::DrawItem> items) REQUIRES(device.draws);

@@ -78,8 +78,8 @@ struct CostModel {
     /// Of the picture as it is drawn, in every frame: with_background() and at_quality() find it. No file holds it.
     float drawn_pass_ns_per_pixel = 0;
     float rest_pass_ns_per_pixel = 8;  ///< of one pass over the picture at rest; typical, no calibration measures it
-    /// Of the image cache, typical of llvmpipe; no calibration measures it. A picture, by its box's faces: transparent pixels
-    /// cost as much as others. A new one, beside what it shows: a pass, and its texels.
+    /// Of the image cache. A picture, by its box's faces: transparent pixels cost as much as others. A new one, beside what it
+    /// shows: a pass, and its texels.
     float picture_us = 1, picture_ns_per_pixel = 5.6F, capture_us = 20, capture_ns_per_texel = 1;
     float background_ns_per_pixel = 3.7F;  ///< of what is behind everything (background_effects), in models that call for it
     float behind_ns_per_pixel = 0;         ///< the same in this model's pictures: with_background() sets it. No file holds it
@@ -91,7 +91,7 @@ struct CostModel {
     bool calibrated = false;  ///< false: built-in defaults
     /// False: the constants above, which no file holds.
     bool enlarge_measured = false, blur_measured = false, samples_measured = false, trilinear_measured = false,
-         background_measured = false, prices_measured = false;
+         background_measured = false, prices_measured = false, pictures_measured = false;
 
     /// Interpolated. Arguments below 1 count as 1; beyond the grid the cost is extrapolated linearly. Never negative. A NaN
     /// argument gives the largest cell.

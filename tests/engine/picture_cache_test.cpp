@@ -268,17 +268,33 @@ TEST(PictureCache, IsTheSameAtAnyNumberOfWorkers) {
     }
 }
 
-TEST(PictureCache, FramesAreRememberedWithoutTheirPictures) {
-    PictureWalk walk(test::forest_model(), {});
+/// Drawn again from what it showed, a frame is what it was: its pictures too, also where they are more than one frame can make.
+TEST(PictureCache, FramesAreDrawnAgainWithTheirPictures) {
+    PictureWalk walk(test::forest_model(), {.kind = gl::BackendKind::egl});
+    if (walk.absent()) GTEST_SKIP() << "no EGL here";
+    Engine& engine = walk.engine();
+    engine.device().draws.plays();
     Pose pose;
-    for (int i = 0; i < 20; ++i) walk.frame(pose = along(walk.engine(), i));
-    ASSERT_FALSE(walk.engine().pictures().empty());
-    const std::size_t before = walk.engine().drawn().size();
-    walk.engine().draw_pictures_as_forms();
-    EXPECT_GT(walk.engine().drawn().size(), before);
-    std::vector<bool> drawn(walk.engine().model().nodes.size(), false);
-    for (const gl::DrawItem& item : walk.engine().drawn()) drawn[item.node] = true;
-    for (const gl::DrawItem& item : walk.engine().full_detail(pose)) EXPECT_TRUE(drawn[item.node]);
+    for (int i = 0; i < 12; ++i) walk.frame(pose = along(engine, i));
+    const std::vector<gl::DrawItem> items(engine.drawn().begin(), engine.drawn().end());
+    const std::vector<ShownPicture> shown(engine.shown_pictures().begin(), engine.shown_pictures().end());
+    ASSERT_GT(shown.size(), 5U);
+    ShownPicture unseen = shown.front();
+    unseen.picture.place.layer = 63;
+    unseen.picture.box = {pose.position - 1.0, pose.position + 1.0};
+    std::vector<ShownPicture> pictures(gl::max_captures, unseen);
+    pictures.insert(pictures.end(), shown.begin(), shown.end());
+    const auto frame = engine.device().read_pixels();
+    engine.draw_unbudgeted(pose, items, 1, rt::TextureFilter::automatic);
+    const auto bare = engine.device().read_pixels();
+    engine.draw_unbudgeted(pose, items, pictures, 1, rt::TextureFilter::automatic);
+    const auto again = engine.device().read_pixels();
+    ASSERT_TRUE(frame && bare && again);
+    EXPECT_NE(frame->rgba, bare->rgba);
+    EXPECT_EQ(frame->rgba, again->rgba);
+    const SubmitReport next = walk.frame(pose);
+    EXPECT_LE(next.pictures, next.pictures_made) << "those of the walk are gone";
+    EXPECT_TRUE(holes(engine, pose).empty());
 }
 
 TEST(PictureCache, FramesAllocateNothing) {
@@ -290,7 +306,6 @@ TEST(PictureCache, FramesAllocateNothing) {
         walk.prepare(pose);
         const std::uint64_t before = test::allocations();
         const SubmitReport report = walk.draw(pose, test::ample_us, test::ample_us);
-        walk.engine().draw_pictures_as_forms();
         allocated += test::allocations() - before;
         made += report.pictures_made;
     }

@@ -181,6 +181,45 @@ TEST(EnlargeTime, is_never_free_and_never_without_end) {
     EXPECT_FLOAT_EQ(measure::enlarge_ns_of(stuck, {1000, 200}).value(), 100);
 }
 
+/// Frames of 1000 x 200 pixels: a picture of 2 us and 3 ns a pixel, a new one of 40 us and 0.5 ns a texel.
+measure::PictureTimes times_of_pictures() {
+    using Times = measure::PictureTimes;
+    const double many = 2.0 * Times::count, wide = 2.0 * Times::wide + 3e-3 * Times::fills * 200'000;
+    const auto captures = [](double texels) { return Times::captures * (40 + 0.5e-3 * texels * texels); };
+    const double small = captures(Times::small_texels), large = captures(Times::large_texels);
+    return {{many, 9 * many, many}, {wide, wide, 0}, {small, small, 1e6}, {large, large, 1e6}};  // some were disturbed
+}
+
+TEST(PicturePrices, are_those_of_the_usual_frame) {
+    model::CostModel costs;
+    ASSERT_TRUE(measure::price_pictures(times_of_pictures(), {1000, 200}, costs));
+    EXPECT_TRUE(costs.pictures_measured);
+    EXPECT_FLOAT_EQ(costs.picture_us, 2);
+    EXPECT_FLOAT_EQ(costs.picture_ns_per_pixel, 3);
+    EXPECT_FLOAT_EQ(costs.capture_us, 40);
+    EXPECT_FLOAT_EQ(costs.capture_ns_per_texel, 0.5F);
+}
+
+TEST(PicturePrices, are_never_free_and_need_times) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    model::CostModel costs;
+    ASSERT_TRUE(measure::price_pictures({{-1}, {-1}, {-1}, {-2}}, {1000, 200}, costs));
+    for (const float price : {costs.picture_us, costs.picture_ns_per_pixel, costs.capture_us, costs.capture_ns_per_texel})
+        EXPECT_GT(price, 0);
+    const measure::PictureTimes good = times_of_pictures();
+    for (auto times : {&measure::PictureTimes::many_us, &measure::PictureTimes::wide_us, &measure::PictureTimes::small_us,
+                       &measure::PictureTimes::large_us}) {
+        for (const std::vector<double>& bad : {std::vector<double>{}, std::vector<double>{1, nan, 1}}) {
+            measure::PictureTimes without = good;
+            without.*times = bad;
+            model::CostModel unchanged;
+            EXPECT_FALSE(measure::price_pictures(without, {1000, 200}, unchanged));
+            EXPECT_FALSE(unchanged.pictures_measured);
+            EXPECT_EQ(unchanged.capture_us, model::CostModel{}.capture_us);
+        }
+    }
+}
+
 TEST(DearerFactor, is_the_median_of_the_pairs_and_at_least_one) {
     const std::vector<measure::WorkPair> pairs{{100, 250}, {1000, 2000}, {10, 500}};  // the last was disturbed
     EXPECT_FLOAT_EQ(measure::dearer_factor_of(pairs, 4).value(), 2.5F);

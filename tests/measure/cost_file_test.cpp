@@ -94,6 +94,30 @@ TEST_F(CostFile, holds_the_price_of_a_sky_where_it_was_measured) {
     EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_));
 }
 
+TEST_F(CostFile, holds_the_prices_of_pictures_where_they_were_measured) {
+    EXPECT_EQ(read_text(file_).value().find("picture"), std::string::npos);
+    EXPECT_FALSE(measure::read_costs(file_, "")->pictures_measured) << "a table of before has none";
+    costs_.picture_us = 1.2345678F;
+    costs_.picture_ns_per_pixel = 2.3456789F;
+    costs_.capture_us = 34.567891F;
+    costs_.capture_ns_per_texel = 0.45678912F;
+    costs_.pictures_measured = true;
+    ASSERT_TRUE(measure::write_costs(file_, costs_).ok());
+    const auto read = measure::read_costs(file_, costs_.machine);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_EQ(read->picture_us, costs_.picture_us);
+    EXPECT_EQ(read->picture_ns_per_pixel, costs_.picture_ns_per_pixel);
+    EXPECT_EQ(read->capture_us, costs_.capture_us);
+    EXPECT_EQ(read->capture_ns_per_texel, costs_.capture_ns_per_texel);
+    EXPECT_TRUE(read->pictures_measured);
+    EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_));
+    costs_.capture_us = -1;
+    ASSERT_TRUE(measure::write_costs(file_, costs_).ok());
+    const auto wrong = measure::read_costs(file_, "");
+    ASSERT_FALSE(wrong.ok());
+    EXPECT_NE(wrong.error().text().find("capture_us"), std::string::npos) << wrong.error().text();
+}
+
 TEST_F(CostFile, names_the_filter_that_it_was_measured_by) {
     EXPECT_EQ(read_text(file_).value().find("filter"), std::string::npos);
     EXPECT_EQ(measure::read_costs(file_, "")->filter, rt::TextureFilter::automatic) << "a table of before does not know";

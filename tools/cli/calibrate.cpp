@@ -85,6 +85,12 @@ nlohmann::ordered_json to_json(const measure::Calibration& c, const std::string&
               {"share_of_raster_time", c.costs.sample_share},
               {"pass_ns_per_pixel", c.costs.sample_pass_ns_per_pixel}}},
             {"background", {{"measured", c.costs.background_measured}, {"ns_per_pixel", c.costs.background_ns_per_pixel}}},
+            {"pictures",
+             {{"measured", c.costs.pictures_measured},
+              {"picture_us", c.costs.picture_us},
+              {"picture_ns_per_pixel", c.costs.picture_ns_per_pixel},
+              {"capture_us", c.costs.capture_us},
+              {"capture_ns_per_texel", c.costs.capture_ns_per_texel}}},
             {"trilinear", {{"measured", c.costs.trilinear_measured}, {"factor", c.costs.trilinear_factor}}},
             {"frame_error", {{"p50", c.frame_error_p50}, {"p90", c.frame_error_p90}, {"p99", c.frame_error_p99}}},
             {"timer_query",
@@ -349,6 +355,9 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
                c->costs.samples_measured ? "" : ", built-in figures");
     fmt::print("  a sky: {:.2f} ns a pixel{}\n", c->costs.background_ns_per_pixel,
                c->costs.background_measured ? "" : ", a built-in figure");
+    fmt::print("  a picture of the image cache: {:.1f} us and {:.2f} ns a pixel; a new one {:.0f} us and {:.2f} ns a texel{}\n",
+               c->costs.picture_us, c->costs.picture_ns_per_pixel, c->costs.capture_us, c->costs.capture_ns_per_texel,
+               c->costs.pictures_measured ? "" : ", built-in figures");
     fmt::print("  trilinear textures: x{:.2f} of the raster time{}\n", c->costs.trilinear_factor,
                c->costs.trilinear_measured ? "" : ", a built-in figure");
     fmt::print("  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; the budget spends x{:.2f}\n",

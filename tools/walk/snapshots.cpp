@@ -15,38 +15,38 @@
 
 namespace surefoot::walk {
 
-std::size_t snapshots_that_fit(std::size_t max_items, bool with_last) {
-    const std::size_t items = max_items * (with_last ? 2 : 1);
-    return std::max<std::size_t>(1, snapshot_memory_bytes / (sizeof(FrameSnapshot) + items * sizeof(gl::DrawItem)));
+std::size_t snapshots_that_fit(const SnapshotRoom& room, bool with_last) {
+    const std::size_t frame_bytes = room.items * sizeof(gl::DrawItem) + room.pictures * sizeof(ShownPicture);
+    return std::max<std::size_t>(1, snapshot_memory_bytes / (sizeof(FrameSnapshot) + (with_last ? 2 : 1) * frame_bytes));
 }
 
-SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items, bool with_last)
+SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, const SnapshotRoom& room, bool with_last)
     : every_(every), with_last_(with_last), snapshots_(every == 0 ? 0 : max_snapshots) {
-    const auto touch = [&](std::vector<gl::DrawItem>& items) {  // now, so that the copy later does not fault
-        items.resize(max_items);
-        items.clear();
+    const auto touch = [](auto& shown, std::size_t count) {  // now, so that the copy later does not fault
+        shown.resize(count);
+        shown.clear();
     };
     for (FrameSnapshot& snapshot : snapshots_) {
-        touch(snapshot.items);
-        if (with_last) touch(snapshot.last_items);
+        touch(snapshot.items, room.items);
+        touch(snapshot.pictures, room.pictures);
+        if (!with_last) continue;
+        touch(snapshot.last_items, room.items);
+        touch(snapshot.last_pictures, room.pictures);
     }
-}
-
-bool SnapshotStore::keeps(std::uint64_t frame) const {
-    return every_ > 0 && used_ < snapshots_.size() && (frame % every_ == 0 || (with_last_ && (frame + 1) % every_ == 0));
 }
 
 void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
                              rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
                              std::span<const gl::DrawItem> culled, const rt::ShownLight& light, const rt::Switches& parts,
-                             bool shadow) {
+                             bool shadow, std::span<const ShownPicture> pictures) {
     if (every_ == 0 || used_ == snapshots_.size()) return;
     if (frame % every_ != 0) {
-        if ((frame + 1) % every_ == 0) remember_last(filter, drawn, culled);
+        if ((frame + 1) % every_ == 0) remember_last(filter, drawn, culled, pictures);
         return;
     }
     FrameSnapshot& snapshot = snapshots_[used_];
-    if (!CHECK_RARE(drawn.size() <= snapshot.items.capacity(), "A snapshot has room for all that is drawn")) return;
+    const bool fits = drawn.size() <= snapshot.items.capacity() && pictures.size() <= snapshot.pictures.capacity();
+    if (!CHECK_RARE(fits, "A snapshot has room for all that is drawn")) return;
     snapshot.frame = frame;
     snapshot.time_s = time_s;
     snapshot.pose = pose;
@@ -58,15 +58,19 @@ void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pos
     snapshot.parts = parts;
     snapshot.shadow = shadow;
     snapshot.items.assign(drawn.begin(), drawn.end());
+    snapshot.pictures.assign(pictures.begin(), pictures.end());
     ++used_;
-    if (every_ == 1 && used_ < snapshots_.size()) remember_last(filter, drawn, culled);
+    if (every_ == 1 && used_ < snapshots_.size()) remember_last(filter, drawn, culled, pictures);
 }
 
 void SnapshotStore::remember_last(rt::TextureFilter filter, std::span<const gl::DrawItem> drawn,
-                                  std::span<const gl::DrawItem> culled) {
+                                  std::span<const gl::DrawItem> culled, std::span<const ShownPicture> pictures) {
     if (!with_last_) return;
     std::vector<gl::DrawItem>& last = snapshots_[used_].last_items;
-    if (!CHECK_RARE(drawn.size() + culled.size() <= last.capacity(), "A snapshot has room for a whole cut")) return;
+    std::vector<ShownPicture>& last_pictures = snapshots_[used_].last_pictures;
+    const bool fits = drawn.size() + culled.size() <= last.capacity() && pictures.size() <= last_pictures.capacity();
+    if (!CHECK_RARE(fits, "A snapshot has room for a whole cut")) return;
+    last_pictures.assign(pictures.begin(), pictures.end());
     snapshots_[used_].last_filter = filter;
     last.assign(drawn.begin(), drawn.end());
     last.insert(last.end(), culled.begin(), culled.end());
@@ -120,9 +124,10 @@ void add_top_view(const Engine& engine, const FrameSnapshot& snapshot, report::R
 
 }  // namespace
 
-void draw_as_in(Engine& engine, const FrameSnapshot& snapshot, std::span<const gl::DrawItem> items, rt::TextureFilter filter) {
+void draw_as_in(Engine& engine, const FrameSnapshot& snapshot, std::span<const gl::DrawItem> items, rt::TextureFilter filter,
+                std::span<const ShownPicture> pictures) {
     if (snapshot.shadow) engine.refresh_shadow(snapshot.pose);
-    engine.draw_unbudgeted(snapshot.pose, items, snapshot.resolution, filter);
+    engine.draw_unbudgeted(snapshot.pose, items, pictures, snapshot.resolution, filter);
 }
 
 Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapshot& snapshot) {
@@ -142,7 +147,7 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     engine.set_time(snapshot.time_s);
     const model::EffectMask hidden = hidden_effects(snapshot.light.on), left_out = hidden | hidden_effects(snapshot.parts);
     engine.hide_effects(left_out);
-    draw_as_in(engine, snapshot, snapshot.items, snapshot.filter);
+    draw_as_in(engine, snapshot, snapshot.items, snapshot.filter, snapshot.pictures);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
     engine.hide_effects(hidden);
@@ -152,7 +157,7 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     if (!reference) return reference.error();
     if (!snapshot.last_items.empty()) {
         engine.hide_effects(left_out);
-        draw_as_in(engine, snapshot, last_cut_at(engine.model(), snapshot), snapshot.last_filter);
+        draw_as_in(engine, snapshot, last_cut_at(engine.model(), snapshot), snapshot.last_filter, snapshot.last_pictures);
         auto before = engine.device().read_pixels();
         if (!before) return before.error();
         out.pops_compared = true;
@@ -191,7 +196,7 @@ Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::
         show_light(engine, snapshot.light);
         engine.set_time(snapshot.time_s);
         engine.hide_effects(hidden_effects(snapshot.light.on) | hidden_effects(snapshot.parts));
-        draw_as_in(engine, snapshot, snapshot.items, snapshot.filter);
+        draw_as_in(engine, snapshot, snapshot.items, snapshot.filter, snapshot.pictures);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();
         auto written = image::write_png(fmt::format("{}/{:05}.png", dir, i), image->width, image->height, image->rgba);

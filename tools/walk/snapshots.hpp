@@ -27,31 +27,36 @@ struct FrameSnapshot {
     bool shadow = false;  ///< it showed the shadow map of what moves
     std::vector<gl::DrawItem> items;
     std::vector<gl::DrawItem> last_items;  ///< the frame before's, those outside its view included; empty: none was kept
+    std::vector<ShownPicture> pictures, last_pictures;  ///< of the image cache, in both frames
 };
 
 /// Memory limit of all snapshots of a walk, in bytes. 512 of them on the largest models.
 constexpr std::size_t snapshot_memory_bytes = 256U << 20U;
-/// At least one. with_last: each holds the items of two frames.
-std::size_t snapshots_that_fit(std::size_t max_items, bool with_last);
+/// Most items and pictures of the image cache in a frame.
+struct SnapshotRoom {
+    std::size_t items = 0, pictures = 0;
+    SnapshotRoom(std::size_t max_items, std::size_t max_pictures = 0)  // NOLINT: most frames have items alone
+        : items(max_items), pictures(max_pictures) {}
+};
+/// At least one. with_last: each holds two frames.
+std::size_t snapshots_that_fit(const SnapshotRoom& room, bool with_last);
 
 /// Sized before the walk; remember() only copies.
 class SnapshotStore {
 public:
-    /// Every `every` frames, at most `max_snapshots` of them, each of at most `max_items` items. with_last: also the items of the
-    /// frame before each.
-    SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items, bool with_last = false);
+    /// Every `every` frames, at most `max_snapshots` of them. with_last: also what the frame before each shows.
+    SnapshotStore(std::uint64_t every, std::size_t max_snapshots, const SnapshotRoom& room, bool with_last = false);
     /// On the frame thread, after each frame. Frames that are not due, or beyond the store, are passed over.
     void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
                   rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
                   std::span<const gl::DrawItem> culled = {}, const rt::ShownLight& light = {}, const rt::Switches& parts = {},
-                  bool shadow = false);
-    /// Whether remember() of this frame will keep what is drawn.
-    [[nodiscard]] bool keeps(std::uint64_t frame) const;
+                  bool shadow = false, std::span<const ShownPicture> pictures = {});
     [[nodiscard]] const std::vector<FrameSnapshot>& snapshots() const { return snapshots_; }
     [[nodiscard]] std::size_t used() const { return used_; }
 
 private:
-    void remember_last(rt::TextureFilter filter, std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled);
+    void remember_last(rt::TextureFilter filter, std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled,
+                       std::span<const ShownPicture> pictures);
 
     std::uint64_t every_;
     bool with_last_;
@@ -63,10 +68,11 @@ private:
 /// them: they are no pop. Allocates.
 std::vector<gl::DrawItem> last_cut_at(const model::Model& model, const FrameSnapshot& snapshot);
 
-/// Draws items at the resolution and with the filter of a snapshot, in the light, at the time and without the effects that were
-/// set. If its frame showed shadows of what moves, they are drawn anew for its moment: the frame's own may be
+/// Draws items and pictures at the resolution and with the filter of a snapshot, in the light, at the time and without the
+/// effects that were set. If its frame showed shadows of what moves, they are drawn anew for its moment: the frame's own may be
 /// MovingShadow::max_off_px beside.
-void draw_as_in(Engine& engine, const FrameSnapshot& snapshot, std::span<const gl::DrawItem> items, rt::TextureFilter filter);
+void draw_as_in(Engine& engine, const FrameSnapshot& snapshot, std::span<const gl::DrawItem> items, rt::TextureFilter filter,
+                std::span<const ShownPicture> pictures = {});
 
 /// Draws a snapshot again, and full detail, and measures the difference; with the top view of what was drawn. Where the items of
 /// the frame before were kept, draws them too: what changes is the popping.

@@ -267,7 +267,8 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     WalkOutcome outcome;
     notify_user(s.notes, progress);
     // After memory is locked: what the store sets aside is locked with it, and touched.
-    SnapshotStore snapshots = make_snapshot_store(request, s.frames, s.engine->drawn_capacity(), s.notes);
+    SnapshotStore snapshots =
+        make_snapshot_store(request, s.frames, {s.engine->drawn_capacity(), s.engine->picture_capacity()}, s.notes);
     rt::SpscRing<rt::FrameRecord> ring(4096);
     ControlBlocks blocks;
     std::uint64_t seen = 0;

@@ -132,7 +132,7 @@ void take_census(const PlacingPlan& plan, WalkFacts& facts) {
     facts.threads.insert(facts.threads.end(), rows.begin(), rows.end());
 }
 
-SnapshotStore make_snapshot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
+SnapshotStore make_snapshot_store(const WalkRequest& request, std::uint64_t frames, const SnapshotRoom& room,
                                   std::vector<std::string>& notes) {
     const bool for_pictures = request.snap_every == 0;
     const std::uint64_t pictures = pictures_wanted(request);
@@ -141,14 +141,14 @@ SnapshotStore make_snapshot_store(const WalkRequest& request, std::uint64_t fram
     const std::uint64_t every = for_pictures ? spread : request.snap_every;
     const std::uint64_t wanted = for_pictures ? pictures : (frames - 1) / every + 1;
     const bool with_last = pictures > 0;
-    const std::uint64_t fit = snapshots_that_fit(max_items, with_last);
+    const std::uint64_t fit = snapshots_that_fit(room, with_last);
     if (wanted > fit) {
         notes.push_back(
             fmt::format("{}: {} of {} pictures are kept, because no more fit in {} MiB of memory. Take fewer with {}",
                         for_pictures ? "--pictures" : "--snap", fit, wanted, snapshot_memory_bytes >> 20U,
                         for_pictures ? fmt::format("--pictures {}", fit) : fmt::format("--every {}", (frames - 1) / fit + 1)));
     }
-    return {every, static_cast<std::size_t>(std::min(wanted, fit)), max_items, with_last};
+    return {every, static_cast<std::size_t>(std::min(wanted, fit)), room, with_last};
 }
 
 void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const SnapshotStore& snapshots,

@@ -34,7 +34,7 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
 void take_census(const PlacingPlan& plan, WalkFacts& facts);
 
 /// Room for the pictures that --snap or --report will want of `frames` frames; a message where that is less than all.
-SnapshotStore make_snapshot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
+SnapshotStore make_snapshot_store(const WalkRequest& request, std::uint64_t frames, const SnapshotRoom& room,
                                   std::vector<std::string>& notes);
 
 /// Ledger, trace, capture, pictures, report: what the request names. One that fails goes to outcome.failures, and the next is

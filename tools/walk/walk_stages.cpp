@@ -431,10 +431,9 @@ void WalkStages::account(rt::FrameRecord& record) {
         follows && !report_.at_rest && engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
     if (report_.rest_samples > 0) record.dropped_parts = {};  // full detail has all of them
     keep(record);
-    if (snapshots_.keeps(record.frame)) engine_.draw_pictures_as_forms();
     snapshots_.remember(record.frame, walk_time_s(), now_.pose, record.accuracy, record.resolution, record.filter,
                         record.triangles, engine_.drawn(), engine_.culled(), record.light,
-                        rt::parts_left(record.light.on, record.dropped_parts), record.shadow_shown);
+                        rt::parts_left(record.light.on, record.dropped_parts), record.shadow_shown, engine_.shown_pictures());
 }
 
 }  // namespace surefoot::walk

@@ -156,7 +156,7 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
         std::vector<gl::DrawItem> items = snapshot.items;
         items.erase(items.begin() + static_cast<std::ptrdiff_t>(i));
         items.insert(items.end(), below[i].begin(), below[i].end());
-        draw_as_in(engine_, snapshot, items, snapshot.filter);
+        draw_as_in(engine_, snapshot, items, snapshot.filter, snapshot.pictures);
         auto with = engine_.device().read_pixels();
         if (!with) return with.error();
         const double goes = picture.mse - measure::snr(with->rgba, picture.full).mse;
