@@ -22,6 +22,7 @@ constexpr double limited_share = 0.25;   // the same where forms compete with th
 constexpr double max_share = 1.0 / 16;   // of the budget, for one picture: what a slice may take
 constexpr double usual_budget_us = 33'333;
 constexpr double value_share = 1e-5;             // of the picture: of what saves time that nothing else can use
+constexpr double min_rate_share = 1e-7;          // of the picture, a us: the least that time is worth beside what is shown more
 constexpr std::uint32_t first_picture_item = 1;  // of ItemKind::refresh; the shadow map is below
 constexpr std::size_t uncovered_chunk = 32;
 
@@ -158,11 +159,12 @@ void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const selec
     view.combine = combine();
     const double budget_us = std::isfinite(input.budget_us) ? input.budget_us : usual_budget_us;
     view.max_price_us = max_share * budget_us;
-    const std::span<const cache::CacheOffer> plan_of_pictures = pictures.plan(view);
-    if (plan_of_pictures.empty()) return;
     const auto room_us = static_cast<float>(select::Budget(input).room_us());
     const float a_ms = by_budget ? set.curve.value_at(room_us + 1000.0F) - set.curve.value_at(room_us) : 0.0F;
     const double rate = std::max(1e-3 * static_cast<double>(a_ms), value_share * set.full_value / usual_budget_us);
+    const double buying = std::max(rate, min_rate_share * set.full_value);
+    view.us_per_value = by_budget && buying > 0 ? 1 / buying : 0.0;
+    const std::span<const cache::CacheOffer> plan_of_pictures = pictures.plan(view);
     double left_us = (by_budget ? limited_share : unlimited_share) * budget_us;
     for (const cache::CacheOffer& offer : plan_of_pictures) {
         if (static_cast<double>(offer.price_us) > left_us) continue;
@@ -187,7 +189,7 @@ void Engine::Impl::take_pictures() {
     for (const select::CutItem& item : cut.items) {
         const model::ItemCost& cost = prepared->choices[item.choice].cost;
         pictures.add_cost(item.node, by.frame_us(cost.submit_us, cost.raster_us) - by.fixed_us,
-                          prepared->choices[item.choice].value);
+                          prepared->choices[item.choice].value, prepared->candidates[item.candidate].full_value);
     }
     pictures.end_costs();
 }

@@ -50,8 +50,8 @@ WalkCache::WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vec
     cost_us_.resize(count, 0);
     saving_us_.resize(count, 0);
     across_us_.resize(count, 0);
-    shown_value_.resize(count, 0);
-    value_.resize(count, 0);
+    shown_value_.resize(count);
+    value_.resize(count);
     facts_.resize(count);
     own_us_.resize(count, 0);
     best_us_.resize(count, 0);
@@ -158,12 +158,12 @@ const model::CoverBits& WalkCache::cover(const ViewPixels& pixels, double radius
 void WalkCache::begin_costs(const model::CoverBits& covered) {
     set_ = covered;
     std::fill(cost_us_.begin(), cost_us_.end(), 0.0F);
-    std::fill(shown_value_.begin(), shown_value_.end(), 0.0F);
+    std::fill(shown_value_.begin(), shown_value_.end(), Value{});
 }
 
 /// What meets one box that is not covered goes with a picture of it. What lies across several goes with all of them: half of it
 /// counts for each by itself, so that a first one is made, and half for the box that holds them all.
-void WalkCache::add_cost(model::Index node, float us, float value) {
+void WalkCache::add_cost(model::Index node, float us, float value, float full_value) {
     const std::span<const Index> met = boxes_.boxes_of(node);
     const auto open = static_cast<float>(std::count_if(met.begin(), met.end(), [&](Index box) { return !set_[box]; }));
     const float share = open > 1 ? share_alone : 1.0F;
@@ -171,7 +171,8 @@ void WalkCache::add_cost(model::Index node, float us, float value) {
     for (const Index box : met) {
         if (set_[box]) continue;
         cost_us_[box] += share * us / open;
-        shown_value_[box] += value / open;
+        shown_value_[box].full += full_value / open;
+        shown_value_[box].missing += std::max(0.0F, full_value - value) / open;
         all = all == none ? box : common_box(all, box);
     }
     if (open > 1) cost_us_[all] += (1 - share) * us;
@@ -194,10 +195,11 @@ void WalkCache::end_costs() {
         if (!set_[i]) own_us += (own_us > 0.0F ? new_share : 1.0F) * (cost_us_[i] - own_us);
         saving_us_[i] = own_us;
         if (box.child_count == 0 && !set_[i]) value_[i] = shown_value_[i];
-        if (box.child_count > 0) value_[i] = 0;
+        if (box.child_count > 0) value_[i] = {};
         for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) {
             saving_us_[i] += saving_us_[child];
-            value_[i] += value_[child];
+            value_[i].full += value_[child].full;
+            value_[i].missing += value_[child].missing;
         }
     }
 }
@@ -207,9 +209,14 @@ float WalkCache::draw_us(Index box, const dvec3& eye, double pixel_rad, double v
     return options_.picture_us + 1e-3F * options_.picture_ns_per_pixel * static_cast<float>(pixels);
 }
 
+/// Of a picture of the box in a frame, without its own time.
+float WalkCache::worth_us(Index box, double us_per_value) const {
+    return saving_us_[box] + static_cast<float>(us_per_value) * value_[box].missing;
+}
+
 /// A new picture of the box, where it pays. False: it does not.
 bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) const {
-    const float saves_us = saving_us_[box] - draw_us(box, view.course.eye, view.pixel_rad, view.view_px);
+    const float saves_us = worth_us(box, view.us_per_value) - draw_us(box, view.course.eye, view.pixel_rad, view.view_px);
     if (!(saves_us > min_saving_us)) return false;
     if (before_blended(boxes_.filled(box))) return false;
     const auto prospect = prospect_of(boxes_.filled(box), view.course, allowed_rad(box, boxes_.filled(box), view.pixels));
@@ -231,7 +238,7 @@ void WalkCache::refresh_facts(const PlanView& view) {
         const Index i = next_fact_;
         next_fact_ = i + 1 < boxes_.size() ? i + 1 : 0;
         facts_[i] = {};
-        if (!boxes_.may_have_picture(i) || !(saving_us_[i] > min_saving_us)) continue;
+        if (!boxes_.may_have_picture(i) || !(worth_us(i, view.us_per_value) > min_saving_us)) continue;
         if (!model::visible(*view.frustum, boxes_.filled(i))) continue;
         --left;
         CacheOffer offer;
@@ -255,7 +262,8 @@ float WalkCache::own_net_us(Index box, const PlanView& view) const {
     if (!(facts_[box].net_us > 0.0F) && !held_[box].any()) return 0;
     if (!model::visible(*view.frustum, boxes_.filled(box))) return 0;
     if (!serves_on(box, view)) return facts_[box].net_us;
-    return std::max(facts_[box].net_us, saving_us_[box] - draw_us(box, view.course.eye, view.pixel_rad, view.view_px));
+    return std::max(facts_[box].net_us,
+                    worth_us(box, view.us_per_value) - draw_us(box, view.course.eye, view.pixel_rad, view.view_px));
 }
 
 void WalkCache::choose(Index i, const PlanView& view) {
@@ -353,7 +361,7 @@ void WalkCache::draw_below(Index i, const ViewPixels& pixels, const model::Frust
     const HeldPicture& held = held_[i];
     if (held.any() && valid_around(held.picture, pixels.eye, 0, allowed_rad(i, held.box, pixels)) && !before_blended(held.box)) {
         draws_.boxes.push_back(i);
-        draws_.value += static_cast<double>(value_[i]);
+        draws_.value += static_cast<double>(value_[i].full);
     } else if (box.child_count == 0) {
         draws_.unserved.push_back(i);
     } else {

@@ -43,7 +43,7 @@ struct CacheOffer {
     Index box = 0;
     Prospect prospect;
     float price_us = 0;  ///< to make it
-    float gain_us = 0;   ///< what it saves while it lives, without its price
+    float gain_us = 0;   ///< what it saves while it lives, and what it shows more at the frame's rate, without its price
 };
 
 /// What a plan depends on, besides the cache.
@@ -54,6 +54,7 @@ struct PlanView {
     double pixel_rad = 1e-3;                  ///< in the middle of the view
     double view_px = 0;                       ///< of the whole view
     double max_price_us = 0;                  ///< of a picture
+    double us_per_value = 0;                  ///< what the frame would pay for a weighted pixel; 0: time is all that counts
     model::FrameCombine combine;
 };
 
@@ -61,7 +62,7 @@ struct PlanView {
 struct CacheDraws {
     std::vector<Index> boxes;     ///< their pictures, back to front
     std::vector<Index> unserved;  ///< covered leaves of the tree whose pictures are not valid: their nodes must be drawn
-    double value = 0;             ///< what their contents showed when they were drawn last
+    double value = 0;             ///< full detail of their contents, as it was when they were drawn last
 };
 
 /// The state between frames.
@@ -87,10 +88,10 @@ public:
     /// no bit where no picture is valid.
     const model::CoverBits& cover(const ViewPixels& pixels, double radius_m);
 
-    /// What the last cut's items cost and show, node by node: so much could be saved. `covered`: of the set of that cut; what
-    /// lies there is not drawn, so its last cost stays.
+    /// What the last cut's items cost and show, node by node, and what full detail would show: so much could be saved, and shown
+    /// more. `covered`: of the set of that cut; what lies there is not drawn, so its last cost stays.
     void begin_costs(const model::CoverBits& covered);
-    void add_cost(model::Index node, float us, float value);
+    void add_cost(model::Index node, float us, float value, float full_value);
     void end_costs();
 
     /// Pictures that pay before they fail or are forgotten, the best first. Valid until the next call.
@@ -131,6 +132,7 @@ private:
         Index box = 0;
         float net_us = 0;
     };
+    [[nodiscard]] float worth_us(Index box, double us_per_value) const;
     [[nodiscard]] bool work_out(Index box, const PlanView& view, CacheOffer& offer) const;
     void refresh_facts(const PlanView& view);
     [[nodiscard]] float own_net_us(Index box, const PlanView& view) const;
@@ -153,7 +155,11 @@ private:
     std::uint64_t forgot_frame_ = 0;           ///< of the last forget()
     double forget_frames_ = 0;                 ///< usually between two of them; 0: none was
     model::CoverBits covered_;
-    std::vector<float> shown_value_, value_;  ///< by box: of the last cut; of the last cut that drew it
+    /// By box, of full detail, and what the cut's forms lacked of it: of the last cut, and of the last cut that drew the box.
+    struct Value {
+        float full = 0, missing = 0;
+    };
+    std::vector<Value> shown_value_, value_;
     model::CoverBits set_;                    ///< of the last cut
     std::vector<float> across_us_;            ///< by box: of what lies across its children, to go only with all of them
     std::vector<float> cost_us_, saving_us_;  ///< by box: of the last cut; what a picture would save in a frame

@@ -53,6 +53,7 @@ struct Candidate {
     model::ItemCost floor_cost;      ///< of the cheapest legal cut of the visible subtree
     float pixels = 0;                ///< projected box area in the view, clipped to it
     float importance = 1;            ///< of the node, 0..1: a factor on errors, where all objects share one
+    float full_value = 0;            ///< of full detail below, in weighted pixels. Captures have none
     bool floor_open = false;         ///< the cheapest cut of the subtree uses the children
 };
 

@@ -293,6 +293,7 @@ void ValuePass::run(const model::FrameCombine& combine, float resolved_rad, std:
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
         set_values(i, resolved_rad, weights[i], shown_px[i], frame, looks, sky);
         add_to_groups(i, frame, looks);
+        frame.candidates[i].full_value = sums_[i].full;
         const OwnChoices own{combine, choices, hull_of(combine, choices, room)};
         if (candidate.child_count == 0) full_value += static_cast<double>(choices.back().value);
         const bool inner = candidate.child_count > 0 && sums_[i].curve != none;
