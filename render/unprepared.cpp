@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "render/model/form_range.hpp"
 #include "render/model/pixels.hpp"
-#include "render/prepare/evaluate.hpp"
 #include "render/select/select.hpp"
 
 namespace surefoot {
@@ -80,7 +80,7 @@ UnpreparedItem Unprepared::item_of(model::Index node, model::Index rep, const Vi
     float rasterised = 0;
     item.cost = view.costs.of(rep, n.box, view.eye, view.scale, rasterised, view.hidden);
     item.pixels = std::min(model::rasterised_pixels(r, n.box, view.eye, view.scale), view.scale.viewport_pixels);
-    item.error_rad = r.error_m / prepare::error_distance(static_cast<float>(n.box.distance(view.eye)));
+    item.error_rad = model::error_rad(r, static_cast<float>(n.box.distance(view.eye)));
     item.floor = rep == everywhere_rep(*model_, node) && (n.child_count > 0 || rep + 1 < n.first_rep + n.rep_count);
     return item;
 }
@@ -121,7 +121,7 @@ bool Unprepared::walk(std::span<const model::Index> shown, const View& view) {
         const bool opened = form == select::SelectState::opened || (form == model::none && level_[step.node] == Level::above);
         if (!opened) {
             const auto nearest_m = static_cast<float>(node.box.distance(view.eye));
-            const bool keeps = form != model::none && prepare::legal(model_->reps[form], nearest_m);
+            const bool keeps = form != model::none && model::legal(model_->reps[form], nearest_m);
             if (!add(step.node, keeps ? form : everywhere_rep(*model_, step.node), step.group, view)) return false;
             continue;
         }

@@ -209,6 +209,11 @@ grep -qx 'surefoot devices list \[OPTION\]\.\.\.' man/surefoot-devices-list.1 ||
 # Figures and forms.
 json inspect f.walk --tree
 grep -q '"parent"' out || complain "inspect --tree --json has no parents"
+grep -q '"range"' out && complain "inspect --tree has ranges without an accuracy"
+json inspect f.walk --tree --accuracy 500
+grep -q '"alpha_rad":3.14159' out && grep -q '"drawn":\[{"from_m":' out || complain "inspect --accuracy has no ranges: $(head -c 900 out)"
+"$surefoot" inspect f.walk --tree --accuracy 500 >out 2>err; grep -qE ' from 0 m mesh:[0-9]+, from [0-9.]+ m ' out || complain "inspect --accuracy draws one form at all distances: $(head -3 out)"
+expect 2 '--accuracy.*--tree' inspect f.walk --accuracy 500
 json inspect kept.walk --map plan.svg
 grep -q '"path": "default path' out || complain "the floor plan does not follow the default path: $(cat out)"
 [ "$(head -c 5 plan.svg)" = '<svg ' ] && grep -q '</svg>' plan.svg || complain "the floor plan is no picture"

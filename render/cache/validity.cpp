@@ -151,23 +151,23 @@ double needed_texels(const Picture& picture, double max_texel_rad) {
 }
 
 double inherited_error(double error, double tangent) {
-    if (!(error < all_directions_rad / 2)) return infinite;
+    if (!(error < model::all_directions_rad / 2)) return infinite;
     const double by = std::tan(error), left = 1 - tangent * by;
     return left > 0 ? by * (1 + tangent * tangent) / left : infinite;
 }
 
-ConicRange valid_range(const Picture& picture, double max_rad) {
+model::ConicRange valid_range(const Picture& picture, double max_rad) {
     // Of all eyes at a distance none is worse than one that is as far ahead and as far aside.
     const auto holds = [&](double distance) {
         return errors_after(picture, {distance, distance}).total() <= max_rad && texel_after(picture, distance) <= max_rad;
     };
-    if (!holds(0)) return empty_range();
+    if (!holds(0)) return model::empty_range();
     double within = 0, beyond = picture.near_m;
     for (int i = 0; i < range_halvings; ++i) {
         const double middle = 0.5 * (within + beyond);
         (holds(middle) ? within : beyond) = middle;
     }
-    return sphere_range(picture.eye, within);
+    return model::sphere_range(picture.eye, within);
 }
 
 PublishedErrors published_errors(const Picture& picture, const dvec3& eye) {

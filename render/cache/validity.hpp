@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "render/cache/conic_range.hpp"
+#include "render/model/conic_range.hpp"
 #include "render/model/view.hpp"
 #include "rt/base/geometry.hpp"
 
@@ -75,7 +75,7 @@ double needed_texels(const Picture& picture, double max_texel_rad);
 double inherited_error(double error, double tangent);
 
 /// A sphere of eyes round the picture's own. Seen from each of them neither error nor texel is over max_rad. May be empty.
-ConicRange valid_range(const Picture& picture, double max_rad);
+model::ConicRange valid_range(const Picture& picture, double max_rad);
 
 /// The tests of 1996, for comparison: translation and approach, each by itself, by the depths from the picture's own eye.
 struct PublishedErrors {

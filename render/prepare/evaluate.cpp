@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/model/form_range.hpp"
+
 namespace surefoot::prepare {
 
 namespace {
@@ -123,16 +125,10 @@ float nearest_distance(const RegionView& view, const Box& box) {
     return distance > 0.0 ? static_cast<float>(std::min(distance, 1e30)) : 0.0F;
 }
 
-float error_distance(float nearest_m) { return std::max(nearest_m, near_m); }
-
-bool legal(const model::Representation& rep, float nearest_m) {
-    return nearest_m >= rep.min_distance_m && (rep.everywhere || nearest_m > 0.0F);
-}
-
 float finest_error(const model::Model& model, const model::Node& node, float nearest_m) {
     for (Index r = node.first_rep + node.rep_count; r > node.first_rep; --r) {
         const model::Representation& rep = model.reps[r - 1];
-        if (legal(rep, nearest_m)) return rep.error_m;
+        if (model::legal(rep, nearest_m)) return rep.error_m;
     }
     return model.reps[node.first_rep].error_m;
 }
@@ -144,7 +140,7 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, const Box& box, float 
                                   Weight& weight) const {
     const model::Node& node = model_.nodes[candidate.node];
     const dvec3 eye = nearest_eye(view, box);
-    const float distance = error_distance(nearest_m);
+    const float distance = model::error_distance(nearest_m);
     const Seen seen = look(view, box, eye);
     const float sharp = sharpness(view, distance);
     candidate.pixels = seen.pixels;
@@ -165,12 +161,14 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, const Box& box, float 
         choice.subtree_benefit = choice.benefit;
         choice.triangles = model_.reps[r].triangles;
     };
-    const auto error_of = [&](Index r) { return std::clamp(model_.reps[r].error_m / distance, 0.0F, largest_error_rad); };
+    const auto error_of = [&](Index r) {
+        return std::clamp(model::error_rad(model_.reps[r], nearest_m), 0.0F, largest_error_rad);
+    };
 
     std::uint32_t count = 0;
     bool enough = false;
     for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
-        if (!legal(model_.reps[r], nearest_m)) continue;
+        if (!model::legal(model_.reps[r], nearest_m)) continue;
         const float error_rad = error_of(r);
         if (count > 0 && !(error_rad < choices[count - 1].error_rad)) continue;
         Choice choice;

@@ -43,11 +43,6 @@ RegionView seen_at_rest(const RegionView& view, const model::MovingNode& moving)
 
 /// Metres between the node's box and the nearest eye of the region; 0 inside.
 float nearest_distance(const RegionView& view, const Box& box);
-/// Distance by which errors are divided, m: at least the near plane.
-float error_distance(float nearest_m);
-
-/// Whether the representation may be drawn for every eye of the region.
-bool legal(const model::Representation& rep, float nearest_m);
 /// Error in metres of the finest legal representation.
 float finest_error(const model::Model& model, const model::Node& node, float nearest_m);
 
@@ -64,7 +59,7 @@ Outline outline_of(const RegionView& view, const Box& box);
 struct Weight {
     float weight = 0;        ///< of the benefit: size x importance x focus x motion, each 0..1
     float size = 0;          ///< square root of the share of the view, times importance
-    float distance_m = 1;    ///< error_distance()
+    float distance_m = 1;    ///< model::error_distance()
     float pixel_weight = 0;  ///< of one pixel in the value: importance x focus x motion
     Outline outline;
     float size_m = 0;  ///< square root of the box's outline, as a mean of all directions

@@ -10,6 +10,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "render/model/form_range.hpp"
 #include "render/prepare/alike.hpp"
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/occlusion.hpp"
@@ -184,7 +185,7 @@ NodeVisit Preparer::Impl::visit_of(const RegionView& view, Index index, Index pa
                                                   : nearest_distance(view, node.box);
     visit.mask = mask;
     visit.open = node.child_count > 0 && (view.full_depth || finest_error(model, node, visit.nearest_m) >
-                                                                 view.target_error_rad * error_distance(visit.nearest_m));
+                                                                 view.target_error_rad * model::error_distance(visit.nearest_m));
     return visit;
 }
 

@@ -8,16 +8,11 @@
 
 #include "render/cache/validity.hpp"
 #include "rt/base/random.hpp"
+#include "tests/random_direction.hpp"
 
 namespace surefoot::cache {
 
-inline dvec3 any_direction(Random& random) {
-    for (;;) {
-        const dvec3 p = any_in(random, dvec3(-1), dvec3(1));
-        const double length = glm::length(p);
-        if (length > 0.05 && length < 1) return p / length;
-    }
-}
+using test::any_direction;
 
 /// A point of the box; every other one is a corner, where errors are largest.
 inline dvec3 any_point(Random& random, const Box& box) {

@@ -133,7 +133,7 @@ TEST(Validity, HoldsForEveryEyeOfItsRange) {
         const double max = std::exp(random.range(-9, -4));
         picture->texels = static_cast<std::uint32_t>(1.3 * needed_texels(*picture, max)) + 1;
         picture->inherited = random.range(0, 1.1) * max;
-        const ConicRange range = valid_range(*picture, max);
+        const model::ConicRange range = valid_range(*picture, max);
         EXPECT_EQ(range.empty(), picture->inherited > max);
         if (picture->inherited < 0.99 * max) {
             ++positive;

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "render/prepare/evaluate.hpp"
+#include "render/model/form_range.hpp"
 #include "tests/engine/forest_engine.hpp"
 
 namespace surefoot {
@@ -78,10 +78,10 @@ TEST_F(WithoutPreparedSet, TheLastCutKeepsItsFormsWhereTheyAreLegal) {
     const model::Model& m = engine->model();
     for (const gl::DrawItem& item : engine->drawn()) {
         const auto nearest_m = static_cast<float>(m.nodes[item.node].box.distance(pose.position));
-        EXPECT_TRUE(prepare::legal(m.reps[item.rep], nearest_m)) << "node " << item.node;
+        EXPECT_TRUE(model::legal(m.reps[item.rep], nearest_m)) << "node " << item.node;
         const auto before = shown.find(item.node);
         if (before == shown.end()) continue;
-        if (prepare::legal(m.reps[before->second], nearest_m)) {
+        if (model::legal(m.reps[before->second], nearest_m)) {
             EXPECT_EQ(item.rep, before->second) << "node " << item.node;
             ++kept;
         }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "render/model/form_range.hpp"
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/prepared.hpp"
 #include "render/prepare/tree_passes.hpp"

@@ -1,10 +1,12 @@
 // surefoot inspect: what is in a .walk model, in figures or in pictures.
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "render/effects/effects.hpp"
+#include "render/model/form_range.hpp"
 #include "render/model/model.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
@@ -22,6 +24,7 @@ namespace {
 struct InspectArguments {
     std::string file;
     bool tree = false;
+    double accuracy = 0;  ///< that forms are to have in their ranges, rad^-1; 0: no ranges
     bool json = false;
     std::optional<std::string> pictures;    ///< folder of the page
     std::string map, path;                  ///< the floor plan's file; the path on it
@@ -31,7 +34,24 @@ struct InspectArguments {
 
 std::string rep_name(model::RepKind kind) { return std::string(model::form_of(kind).name); }
 
-void print_tree(const model::Model& m) {
+/// From which distance to the middle of the node which form is drawn, where all have at least that accuracy.
+std::string drawn_from(const model::Model& m, model::Index n, double accuracy) {
+    const model::Node& node = m.nodes[n];
+    const std::vector<model::RangedLevel> levels = model::levels_of(m, n, 1 / accuracy);
+    std::string out;
+    for (const model::LevelFrom& from : model::levels_along(levels, node.box.centre(), {1, 0, 0})) {
+        out += fmt::format("{}from {:.4g} m ", out.empty() ? "  " : ", ", from.from_m);
+        if (from.level == levels.size()) {
+            out += node.child_count > 0 ? "the children" : "none";
+            continue;
+        }
+        const model::Representation& rep = m.reps[node.first_rep + from.level];
+        out += fmt::format("{}:{}", rep_name(rep.kind), rep.triangles);
+    }
+    return out;
+}
+
+void print_tree(const model::Model& m, double accuracy) {
     struct Open {
         model::Index node;
         int depth;
@@ -45,13 +65,34 @@ void print_tree(const model::Model& m) {
         for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
             fmt::print("  {}:{}@{:.3g}m", rep_name(m.reps[r].kind), m.reps[r].triangles, m.reps[r].error_m);
         }
+        if (accuracy > 0) fmt::print("{}", drawn_from(m, at.node, accuracy));
         fmt::print("\n");
         for (std::uint32_t c = node.child_count; c > 0; --c) open.push_back({node.first_child + c - 1, at.depth + 1});
     }
 }
 
+nlohmann::ordered_json range_json(const model::ConicRange& range) {
+    if (range.empty()) return nullptr;
+    const auto number = [](double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr; };
+    return {{"centre_m", {range.centre.x, range.centre.y, range.centre.z}},
+            {"distance_m", {range.min_m, number(range.max_m)}},
+            {"direction", {range.direction.x, range.direction.y, range.direction.z}},
+            {"alpha_rad", range.alpha_rad}};
+}
+
+/// The range of each form, and which one is drawn from which distance on; null: none of them.
+void add_ranges(const model::Model& m, model::Index n, double accuracy, nlohmann::ordered_json& node) {
+    const std::vector<model::RangedLevel> levels = model::levels_of(m, n, 1 / accuracy);
+    for (std::size_t i = 0; i < levels.size(); ++i) node["representations"][i]["range"] = range_json(levels[i].range);
+    node["drawn"] = nlohmann::ordered_json::array();
+    for (const model::LevelFrom& from : model::levels_along(levels, m.nodes[n].box.centre(), {1, 0, 0}))
+        node["drawn"].push_back(
+            {{"from_m", from.from_m},
+             {"representation", from.level < levels.size() ? nlohmann::ordered_json(from.level) : nlohmann::ordered_json()}});
+}
+
 /// One object with a flat list, a node a line and never all of them in memory: models have millions.
-void print_tree_json(const std::string& file, const model::Model& m) {
+void print_tree_json(const std::string& file, const model::Model& m, double accuracy) {
     fmt::print("{{\n\"file\": {},\n\"nodes\": [", json_text(file, -1));
     std::vector<model::Index> parents(m.nodes.size(), model::none);
     for (model::Index n = 0; n < m.nodes.size(); ++n) {
@@ -69,12 +110,13 @@ void print_tree_json(const std::string& file, const model::Model& m) {
         }
         const nlohmann::ordered_json parent =
             parents[n] == model::none ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(parents[n]);
-        const nlohmann::ordered_json one = {{"id", n},
-                                            {"parent", parent},
-                                            {"kind", model::name_of(node.kind)},
-                                            {"name", std::string(m.name_of(node))},
-                                            {"triangles", node.triangles},
-                                            {"representations", reps}};
+        nlohmann::ordered_json one = {{"id", n},
+                                      {"parent", parent},
+                                      {"kind", model::name_of(node.kind)},
+                                      {"name", std::string(m.name_of(node))},
+                                      {"triangles", node.triangles},
+                                      {"representations", reps}};
+        if (accuracy > 0) add_ranges(m, n, accuracy, one);
         fmt::print("{}\n{}", n == 0 ? "" : ",", json_text(one, -1));
     }
     fmt::print("\n]\n}}\n");
@@ -174,8 +216,8 @@ int run_inspect(InspectArguments& a, const Context& context) {
     model::WalkFileInfo info;
     auto m = model::read_walk(a.file, &info);
     if (!m) return fail(m.error());
-    if (a.tree && a.json) return print_tree_json(a.file, *m), exit_success;
-    if (a.tree) return print_tree(*m), exit_success;
+    if (a.tree && a.json) return print_tree_json(a.file, *m, a.accuracy), exit_success;
+    if (a.tree) return print_tree(*m, a.accuracy), exit_success;
     std::uint64_t clusters = 0, pieces = 0;
     for (const model::Node& node : m->nodes) {
         clusters += node.kind == model::NodeKind::cluster;
@@ -229,6 +271,11 @@ void add_inspect(CLI::App& app, Context& context) {
     CLI::Option* tree = c->add_flag("--tree", a->tree,
                                     "Print the hierarchy instead: one line per node, with its forms as kind:triangles@error. "
                                     "With --json: a list with parents");
+    c->add_option("--accuracy", a->accuracy,
+                  "Of --tree: accuracy in rad^-1 that every form is to have. Adds which one is drawn from which distance to the "
+                  "middle of its node. With --json: also for which eyes each form has it")
+        ->check(number_within(1e-3, 1e9, "rad^-1"))
+        ->needs(tree);
     CLI::Option* pictures =
         c->add_option("--pictures", a->pictures,
                       "Folder for a page instead: each form drawn beside full detail, with its error, look, cost and bytes");

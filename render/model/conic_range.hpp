@@ -6,7 +6,7 @@
 
 #include "rt/base/geometry.hpp"
 
-namespace surefoot::cache {
+namespace surefoot::model {
 
 constexpr double all_directions_rad = 3.14159265358979323846;
 
@@ -42,4 +42,4 @@ ConicRange enclosing_sphere(const ConicRange& range);
 /// Empty where `eye` is not in both, unless the result is exact.
 ConicRange intersection(const ConicRange& a, const ConicRange& b, const dvec3& eye);
 
-}  // namespace surefoot::cache
+}  // namespace surefoot::model

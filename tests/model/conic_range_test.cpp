@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/cache/displacement.hpp"
+#include "render/model/conic_range.hpp"
+#include "tests/random_direction.hpp"
 
-namespace surefoot::cache {
+namespace surefoot::model {
 namespace {
+
+using test::any_direction;
 
 ConicRange any_range(Random& random, const dvec3& centre) {
     ConicRange range;
@@ -109,6 +112,21 @@ TEST(ConicRanges, ASphereIsInsideOnlyIfAllItsPointsAre) {
     EXPECT_GT(outside, 300);
 }
 
+/// A million spheres, each by a few points of its surface.
+TEST(ConicRangesAtNight, NoSphereOfAMillionIsInsideWrongly) {
+    Random random(4);
+    int inside = 0;
+    for (int i = 0; i < 1'000'000; ++i) {
+        const ConicRange range = any_range(random, dvec3(0));
+        const dvec3 centre = any_direction(random) * random.range(0, 8);
+        const double radius = random.range(0, 3);
+        if (!contains(range, centre, radius)) continue;
+        ++inside;
+        for (int j = 0; j < 16; ++j) ASSERT_TRUE(contains(grown(range, 1e-12), centre + any_direction(random) * radius)) << i;
+    }
+    EXPECT_GT(inside, 100'000);
+}
+
 TEST(ConicRanges, TheEnclosingSphereHoldsAll) {
     Random random(3);
     int tried = 0;
@@ -158,4 +176,4 @@ TEST(ConicRanges, TheirEdgesAreWhereTheySay) {
 }
 
 }  // namespace
-}  // namespace surefoot::cache
+}  // namespace surefoot::model

@@ -1,11 +1,11 @@
 // Conic ranges: points, spheres and other ranges inside of them.
-#include "render/cache/conic_range.hpp"
+#include "render/model/conic_range.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace surefoot::cache {
+namespace surefoot::model {
 
 namespace {
 
@@ -121,4 +121,4 @@ ConicRange intersection(const ConicRange& a, const ConicRange& b, const dvec3& e
     return sphere_within(a, b, eye);
 }
 
-}  // namespace surefoot::cache
+}  // namespace surefoot::model
