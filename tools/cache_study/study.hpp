@@ -11,9 +11,9 @@
 #include "render/model/view.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
-#include "tools/cache_study/birds_eye.hpp"
 #include "tools/cache_study/study_device.hpp"
 #include "tools/cache_study/study_pictures.hpp"
+#include "tools/cache_study/view_sheet.hpp"
 
 namespace surefoot::cache_study {
 
