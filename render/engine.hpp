@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/cache/frame_boxes.hpp"
 #include "render/gl/device.hpp"
 #include "render/model/cost.hpp"
 #include "render/model/covered_boxes.hpp"
@@ -118,6 +119,8 @@ struct SubmitReport {
     bool shadow_refreshed = false, shadow_shown = false;  ///< the shadow map of what moves: bought by this frame; in its picture
     std::uint32_t pictures = 0;                           ///< of the image cache: that show a part of the frame
     std::uint32_t pictures_made = 0;                      ///< bought by this frame
+    std::uint32_t pictures_reused = 0;                    ///< of pictures: made by earlier frames
+    std::uint32_t boxes_as_triangles = 0;                 ///< in view, whose contents no picture shows
     double pictures_us = 0;                               ///< of predicted_us: to draw them
     double captures_us = 0;                               ///< of predicted_us and bought_us: to make them
     std::uint64_t picture_bytes = 0;                      ///< of all pictures that the cache holds
@@ -206,6 +209,11 @@ public:
     [[nodiscard]] std::span<const ShownPicture> shown_pictures() const;
     /// Maximum number of pictures in a frame.
     [[nodiscard]] std::size_t picture_capacity() const;
+    /// What it did with each box of the cache; empty without one.
+    [[nodiscard]] std::span<const cache::FrameBox> cache_boxes() const;
+    /// Such boxes, kept from any frame, from above: cache::birds_eye_view(), with the eye in it. Allocates.
+    [[nodiscard]] std::vector<std::uint8_t> birds_eye(std::span<const cache::FrameBox> frame, const dvec3& eye,
+                                                      std::uint32_t side_px) const;
     /// Whether the last submit() fell to the floor without need. Over half of its picture shows floor forms where the cut before
     /// had finer ones. And what of that cut is in view now would have been done within `time_us` from the call, by `correction`.
     /// Takes a microsecond, or up to a millisecond where much of the picture is at the floor: call it after the frame.

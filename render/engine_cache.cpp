@@ -93,6 +93,8 @@ void Engine::Impl::make_pictures() {
         picture_items.push_back({n, model.nodes[n].first_rep + model.nodes[n].rep_count - 1});
     shown_pictures.reserve(pictures.boxes().size());
     shown_boxes.reserve(pictures.boxes().size());
+    made_boxes.reserve(pictures.boxes().size());
+    frame_boxes.resize(pictures.boxes().size());
     uncovered.reserve(model.nodes.size());
     is_uncovered.resize(model.nodes.size(), false);
     preparer->set_cover(&pictures.boxes());
@@ -205,6 +207,7 @@ void Engine::Impl::capture_pictures(SubmitReport& report) {
             ++report.pictures_made;
             report.captures_us += static_cast<double>(item.cost_us);
             pictures.captured(box);
+            made_boxes.push_back(box);
         } else {
             cut.bought.cancel(i, item);  // not charged either
         }
@@ -255,6 +258,7 @@ void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, 
     after_us = pictures_value = 0;
     shown_pictures.clear();
     shown_boxes.clear();
+    made_boxes.clear();
     uncovered.clear();
     report.picture_bytes = pictures.bytes();
     if (!pictures.any() || use_last) return;
@@ -285,6 +289,14 @@ void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, 
     pictures_value = draws_now.value;
     after_us = report.pictures_us + coarse_us;
     capture_pictures(report);
+}
+
+/// After begin_pictures().
+void Engine::Impl::count_boxes(SubmitReport& report) {
+    if (!pictures.any()) return;
+    const cache::FrameBoxCounts counts = cache::mark_boxes(pictures.boxes(), shown_boxes, made_boxes, frustum, frame_boxes);
+    report.pictures_reused = counts.reused;
+    report.boxes_as_triangles = counts.as_triangles;
 }
 
 /// In full detail where that fits, else coarse: never a hole.
@@ -352,6 +364,21 @@ std::span<const ShownPicture> Engine::shown_pictures() const {
 std::size_t Engine::picture_capacity() const {
     impl_->draws.plays();
     return impl_->shown_boxes.capacity();
+}
+
+std::span<const cache::FrameBox> Engine::cache_boxes() const {
+    impl_->draws.plays();
+    return impl_->frame_boxes;
+}
+
+std::vector<std::uint8_t> Engine::birds_eye(std::span<const cache::FrameBox> frame, const dvec3& eye,
+                                            std::uint32_t side_px) const {
+    impl_->draws.plays();
+    const cache::SceneBoxes& boxes = impl_->pictures.boxes();
+    if (frame.empty() || frame.size() != boxes.size()) return {};
+    Box bounds = boxes.tree().boxes.front().box;
+    bounds.grow(eye);
+    return cache::birds_eye_view(cache::seen_boxes(boxes, frame), bounds, eye, side_px);
 }
 
 void Engine::Impl::draw_pictures(SubmitReport& report) {

@@ -89,6 +89,8 @@ struct Engine::Impl {
     std::string picture_reason;               ///< why there are none
     std::vector<gl::CachePicture> shown_pictures GUARDED_BY(draws);
     std::vector<ShownPicture> shown_boxes GUARDED_BY(draws);  ///< the same, with their boxes
+    std::vector<cache::Index> made_boxes GUARDED_BY(draws);   ///< that got a picture in this frame
+    std::vector<cache::FrameBox> frame_boxes GUARDED_BY(draws);
     std::vector<UncoveredItem> uncovered GUARDED_BY(draws);   ///< leaves whose pictures are not valid
     std::vector<bool> is_uncovered GUARDED_BY(draws);         ///< by node; all false between frames
     model::CoverBits cover_bits GUARDED_BY(draws);
@@ -176,6 +178,7 @@ struct Engine::Impl {
     double find_uncovered(const Pose& pose, double left_us) REQUIRES(draws);
     [[nodiscard]] double left_for_uncovered_us(const SubmitLimits& limits) const REQUIRES(draws);
     void begin_pictures(const Pose& pose, const SubmitLimits& limits, SubmitReport& report) REQUIRES(draws);
+    void count_boxes(SubmitReport& report) REQUIRES(draws);
     void draw_uncovered(const SubmitLimits& limits, double start_us, model::ItemCost& so_far, SubmitReport& report)
         REQUIRES(draws);
     void draw_pictures(SubmitReport& report) REQUIRES(draws);

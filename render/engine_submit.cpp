@@ -275,6 +275,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.profile().begin();
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
     e.begin_pictures(pose, limits, report);
+    e.count_boxes(report);
     e.device->set_filter(e.filtered && !e.use_last ? e.best_filter : e.device->filter());
     if (e.lever.count > 0) e.device->hide_effects(e.hidden | e.lever.left_out);
     e.begin_shadow(pose, report);

@@ -182,7 +182,7 @@ void RestPicture::describe(SubmitReport& report) const {
     report.value = 1;
     report.one_more_ms = 0;
     report.dropped_objects = 0;
-    report.pictures = 0;
+    report.pictures = report.pictures_reused = report.boxes_as_triangles = 0;
     report.floor_share = 0;
 }
 

@@ -99,6 +99,8 @@ struct FrameRecord {
     ShownBy shown_by = ShownBy::nothing;
     bool at_rest = false;                           ///< no cut was drawn: the shown picture stays, or full detail replaces it
     std::uint32_t pictures = 0, pictures_made = 0;  ///< of the image cache: in the frame's picture; bought by it
+    std::uint32_t pictures_reused = 0;              ///< of pictures: made by earlier frames
+    std::uint32_t boxes_as_triangles = 0;           ///< of the image cache, in view: no picture shows their contents
     std::uint32_t uncovered_items = 0;              ///< drawn in place of pictures that were not valid any more
     float pictures_us = 0, captures_us = 0;         ///< predicted: to draw the pictures, and to make those that were bought
     std::uint64_t picture_bytes = 0;                ///< of all pictures that are held

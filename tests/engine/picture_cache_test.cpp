@@ -297,6 +297,38 @@ TEST(PictureCache, FramesAreDrawnAgainWithTheirPictures) {
     EXPECT_TRUE(holes(engine, pose).empty());
 }
 
+TEST(PictureCache, BoxesOfAFrameAreMadeReusedOrTriangles) {
+    PictureWalk walk(test::forest_model(), {});
+    std::uint32_t first = 0, last = 0, reused = 0;
+    for (int i = 0; i < 40; ++i) {
+        const Pose pose = along(walk.engine(), i);
+        const SubmitReport report = walk.frame(pose);
+        std::uint32_t shown = 0, made = 0, shown_anew = 0, as_triangles = 0;
+        for (const cache::FrameBox& box : walk.engine().cache_boxes()) {
+            shown += box.shown ? 1 : 0;
+            made += box.made ? 1 : 0;
+            shown_anew += box.shown && box.made ? 1 : 0;
+            as_triangles += box.as_triangles ? 1 : 0;
+            EXPECT_FALSE(box.shown && box.as_triangles) << i;
+        }
+        EXPECT_EQ(report.pictures, shown) << i;
+        EXPECT_EQ(report.pictures_made, made) << i;
+        EXPECT_EQ(report.pictures_reused, shown - shown_anew) << i;
+        EXPECT_EQ(report.boxes_as_triangles, as_triangles) << i;
+        if (i == 0) first = as_triangles;
+        last = as_triangles;
+        reused += report.pictures_reused;
+    }
+    EXPECT_GT(reused, 200U);
+    EXPECT_GT(first, 20U) << "at first there is no picture";
+    EXPECT_LT(last, first);
+    const std::vector<std::uint8_t> above = walk.engine().birds_eye(walk.engine().cache_boxes(), {}, 64);
+    EXPECT_EQ(above.size(), 4U * 64 * 64);
+    EXPECT_TRUE(walk.engine().birds_eye({}, {}, 64).empty()) << "nothing was kept of that frame";
+    PictureWalk without(test::forest_model(), {.layers = 0});
+    EXPECT_TRUE(without.engine().cache_boxes().empty());
+}
+
 TEST(PictureCache, FramesAllocateNothing) {
     PictureWalk walk(test::forest_model(), {});
     std::uint32_t made = 0;

@@ -35,6 +35,22 @@ TEST(Snapshots, HoldTheFrameBeforeWithWhatWasOutsideItsView) {
     EXPECT_EQ(pairs_of(store.snapshots()[1].last_items), (Pairs{{2, 0}, {102, 0}}));
 }
 
+TEST(Snapshots, HoldTheBoxesOfTheImageCacheOfTheirFrames) {
+    walk::SnapshotStore store(3, 2, 10);
+    store.reserve_boxes(4);
+    const cache::FrameBox* place = store.snapshots()[1].boxes.data();
+    for (model::Index frame = 0; frame < 9; ++frame) {
+        store.remember(frame, 0, {}, 0, 1, rt::TextureFilter::bilinear, 0, Items{{frame, 0}});
+        std::vector<cache::FrameBox> boxes(4);
+        boxes[frame % 4].made = true;
+        if (frame > 0) store.remember_boxes(frame, boxes);
+    }
+    EXPECT_TRUE(store.snapshots()[0].boxes.empty()) << "that frame had none";
+    ASSERT_EQ(store.snapshots()[1].boxes.size(), 4U);
+    EXPECT_TRUE(store.snapshots()[1].boxes[3].made) << "of frame 3, not of those after it";
+    EXPECT_EQ(store.snapshots()[1].boxes.data(), place) << "in the room that was reserved";
+}
+
 TEST(Snapshots, OfEveryFrameHoldTheFrameBeforeToo) {
     walk::SnapshotStore store(1, 2, 10, true);
     for (model::Index frame = 0; frame < 4; ++frame)

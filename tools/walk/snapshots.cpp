@@ -35,6 +35,20 @@ SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, con
     }
 }
 
+void SnapshotStore::reserve_boxes(std::size_t boxes) {
+    for (FrameSnapshot& snapshot : snapshots_) {
+        snapshot.boxes.resize(boxes);
+        snapshot.boxes.clear();
+    }
+}
+
+void SnapshotStore::remember_boxes(std::uint64_t frame, std::span<const cache::FrameBox> boxes) {
+    if (used_ == 0 || snapshots_[used_ - 1].frame != frame) return;
+    FrameSnapshot& snapshot = snapshots_[used_ - 1];
+    if (!CHECK_RARE(boxes.size() <= snapshot.boxes.capacity(), "A snapshot has room for all boxes of the cache")) return;
+    snapshot.boxes.assign(boxes.begin(), boxes.end());
+}
+
 void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
                              rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
                              std::span<const gl::DrawItem> culled, const rt::ShownLight& light, const rt::Switches& parts,
@@ -122,6 +136,17 @@ void add_top_view(const Engine& engine, const FrameSnapshot& snapshot, report::R
     }
 }
 
+void add_birds_eye(const Engine& engine, const FrameSnapshot& snapshot, report::ReportSnapshot& out) {
+    out.birds_eye = engine.birds_eye(snapshot.boxes, snapshot.pose.position, birds_eye_px);
+    if (out.birds_eye.empty()) return;
+    out.birds_eye_px = birds_eye_px;
+    for (const cache::FrameBox& box : snapshot.boxes) {
+        out.new_pictures += box.made ? 1 : 0;
+        out.reused_pictures += box.shown && !box.made ? 1 : 0;
+        out.boxes_as_triangles += box.as_triangles ? 1 : 0;
+    }
+}
+
 }  // namespace
 
 void draw_as_in(Engine& engine, const FrameSnapshot& snapshot, std::span<const gl::DrawItem> items, rt::TextureFilter filter,
@@ -138,6 +163,7 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     out.accuracy = snapshot.accuracy;
     out.resolution = snapshot.resolution;
     add_top_view(engine, snapshot, out);
+    add_birds_eye(engine, snapshot, out);
     const std::vector<gl::DrawItem> full = engine.full_detail(snapshot.pose);
     for (const gl::DrawItem& item : full) out.full_triangles += engine.model().reps[item.rep].triangles;
     if (engine.options().device.kind == gl::BackendKind::null) return out;  // nothing to look at
@@ -200,6 +226,10 @@ Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::
         auto image = engine.device().read_pixels();
         if (!image) return image.error();
         auto written = image::write_png(fmt::format("{}/{:05}.png", dir, i), image->width, image->height, image->rgba);
+        if (!written) return written;
+        const std::vector<std::uint8_t> above = engine.birds_eye(snapshot.boxes, snapshot.pose.position, birds_eye_px);
+        if (above.empty()) continue;
+        written = image::write_png(fmt::format("{}/{:05}-cache.png", dir, i), birds_eye_px, birds_eye_px, above);
         if (!written) return written;
     }
     return {};

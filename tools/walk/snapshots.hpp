@@ -26,6 +26,7 @@ struct FrameSnapshot {
     rt::Switches parts;   ///< of it, that were drawn
     bool shadow = false;  ///< it showed the shadow map of what moves
     std::vector<gl::DrawItem> items;
+    std::vector<cache::FrameBox> boxes;    ///< of the image cache; empty: it has none, or the frame drew no cut
     std::vector<gl::DrawItem> last_items;  ///< the frame before's, those outside its view included; empty: none was kept
     std::vector<ShownPicture> pictures, last_pictures;  ///< of the image cache, in both frames
 };
@@ -51,6 +52,10 @@ public:
                   rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
                   std::span<const gl::DrawItem> culled = {}, const rt::ShownLight& light = {}, const rt::Switches& parts = {},
                   bool shadow = false, std::span<const ShownPicture> pictures = {});
+    /// Before the walk: room for what the image cache does with this many boxes.
+    void reserve_boxes(std::size_t boxes);
+    /// On the frame thread, after remember(): adds the boxes of that frame, if it was remembered.
+    void remember_boxes(std::uint64_t frame, std::span<const cache::FrameBox> boxes);
     [[nodiscard]] const std::vector<FrameSnapshot>& snapshots() const { return snapshots_; }
     [[nodiscard]] std::size_t used() const { return used_; }
 
@@ -78,7 +83,11 @@ void draw_as_in(Engine& engine, const FrameSnapshot& snapshot, std::span<const g
 /// the frame before were kept, draws them too: what changes is the popping.
 Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapshot& snapshot);
 
-/// DIR/00000.png, ... one a snapshot, named by frame number over `every`.
+/// Side of a bird's-eye view of the image cache, pixels.
+constexpr std::uint32_t birds_eye_px = 420;
+
+/// DIR/00000.png, ... one a snapshot, named by frame number over `every`. Where there is an image cache: its bird's-eye view
+/// beside it, as DIR/00000-cache.png.
 Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::string& dir, const Progress& progress);
 
 }  // namespace surefoot::walk

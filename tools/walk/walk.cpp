@@ -269,6 +269,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     // After memory is locked: what the store sets aside is locked with it, and touched.
     SnapshotStore snapshots =
         make_snapshot_store(request, s.frames, {s.engine->drawn_capacity(), s.engine->picture_capacity()}, s.notes);
+    snapshots.reserve_boxes(s.engine->cache_boxes().size());
     rt::SpscRing<rt::FrameRecord> ring(4096);
     ControlBlocks blocks;
     std::uint64_t seen = 0;

@@ -405,6 +405,8 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.shadow_shown = report_.shadow_shown;
     record.pictures = report_.pictures;
     record.pictures_made = report_.pictures_made;
+    record.pictures_reused = report_.pictures_reused;
+    record.boxes_as_triangles = report_.boxes_as_triangles;
     record.pictures_us = static_cast<float>(report_.pictures_us);
     record.captures_us = static_cast<float>(report_.captures_us);
     record.picture_bytes = report_.picture_bytes;
@@ -434,6 +436,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     snapshots_.remember(record.frame, walk_time_s(), now_.pose, record.accuracy, record.resolution, record.filter,
                         record.triangles, engine_.drawn(), engine_.culled(), record.light,
                         rt::parts_left(record.light.on, record.dropped_parts), record.shadow_shown, engine_.shown_pictures());
+    if (!record.at_rest) snapshots_.remember_boxes(record.frame, engine_.cache_boxes());
 }
 
 }  // namespace surefoot::walk
