@@ -134,6 +134,10 @@ void Telemetry::count(const FrameRecord& f) {
     s.rest_frames += f.at_rest ? 1 : 0;
     s.broken_guarantees += f.guarantee > Guarantee::kept ? 1 : 0;
     s.trilinear_frames += f.filter == rt::TextureFilter::trilinear ? 1 : 0;
+    s.pictures_shown += f.pictures;
+    s.pictures_made += f.pictures_made;
+    s.uncovered_items += f.uncovered_items;
+    s.captures_us += double{f.captures_us};
     s.continues += f.continued;
     s.stolen_ns += f.stolen_ns;
     s.preempted_ns += f.preempted_ns;

@@ -91,9 +91,11 @@ struct Figures {
     std::uint64_t own_misses = 0, downgraded_slices = 0, slices = 0, switches = 0, triangles = 0;
     std::uint64_t minor_faults = 0, major_faults = 0, driver_faults = 0, driver_allocations = 0, guard_violations = 0;
     std::uint64_t input_reports = 0, stopped_frames = 0, floor_frames = 0, rest_frames = 0, continues = 0;
-    std::uint64_t broken_guarantees = 0;                          ///< frames below the accuracy that is guaranteed
-    std::uint64_t trilinear_frames = 0;                           ///< that blended two mip levels
-    std::array<std::uint64_t, shown_by_names.size()> shown_by{};  ///< frames, by who told when they were shown
+    std::uint64_t broken_guarantees = 0;                                       ///< frames below the accuracy that is guaranteed
+    std::uint64_t trilinear_frames = 0;                                        ///< that blended two mip levels
+    std::uint64_t pictures_shown = 0, pictures_made = 0, uncovered_items = 0;  ///< of the image cache, as in the records
+    double captures_us = 0;                                                    ///< predicted, to make those pictures
+    std::array<std::uint64_t, shown_by_names.size()> shown_by{};               ///< frames, by who told when they were shown
     std::int64_t stolen_ns = 0, preempted_ns = 0, frame_cpu_ns = 0, raster_cpu_ns = 0;
     double prepare_cpu_us = 0;
     FrameRecord last;  ///< newest frame of the walk; meaningless while frames is 0

@@ -190,6 +190,26 @@ TEST_F(MonitorPages, ReportWhatHappened) {
     EXPECT_NE(e.families.at("surefoot_animation_error_seconds").help.find("due[n]"), std::string::npos) << "its formula";
 }
 
+TEST_F(MonitorPages, PicturesOfTheCacheAreCounted) {
+    run(2, 0);
+    EXPECT_EQ(scrape().at("surefoot_pictures_made_total"), 0);
+    for (int i = 0; i < 3; ++i) {
+        auto f = monitored_frame(next_++, false);
+        f.pictures = 40;
+        f.pictures_made = 2;
+        f.captures_us = 1500;
+        f.uncovered_items = 1;
+        f.picture_bytes = 65536;
+        telemetry_->add(f);
+    }
+    const auto e = scrape();
+    EXPECT_EQ(e.at("surefoot_pictures_shown_total"), 120);
+    EXPECT_EQ(e.at("surefoot_pictures_made_total"), 6);
+    EXPECT_NEAR(e.at("surefoot_picture_captures_seconds_total"), 0.0045, 1e-9);
+    EXPECT_EQ(e.at("surefoot_uncovered_items_total"), 3);
+    EXPECT_EQ(e.at("surefoot_picture_memory_bytes"), 65536);
+}
+
 TEST_F(MonitorPages, ExactPicturesHaveNoErrorAndUnknownIsNotZero) {
     auto f = monitored_frame(next_++, false);
     f.accuracy = std::numeric_limits<float>::infinity();

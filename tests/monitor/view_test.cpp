@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 /// A walk at 50 Hz; every 40th frame is late and skips a slot.
-json viewed_status(int frames, const std::string& model = "/srv/models/town.walk") {
+json viewed_status(int frames, const std::string& model = "/srv/models/town.walk", bool cache = false) {
     const auto telemetry = std::make_unique<rt::Telemetry>();
     telemetry->begin({20'000'000, rt::LatePolicy::lock, 2});
     std::uint64_t slot = 0;
@@ -34,6 +34,15 @@ json viewed_status(int frames, const std::string& model = "/srv/models/town.walk
         f.show_ns = f.handed_ns = f.presented_ns = f.shown_ns = f.deadline_ns + (f.missed ? 20'000'000 : 0);
         f.shown_by = rt::ShownBy::hand_over;
         f.accuracy = 100;
+        if (cache) {
+            f.pictures = 1200;
+            f.pictures_made = 3;
+            f.pictures_reused = 1198;
+            f.boxes_as_triangles = 17;
+            f.picture_bytes = 28U << 20U;
+            f.captures_us = 2200;
+            f.uncovered_items = i % 5 == 0 ? 2 : 0;
+        }
         telemetry->add(f);
     }
     MonitorPage page;
@@ -42,6 +51,7 @@ json viewed_status(int frames, const std::string& model = "/srv/models/town.walk
     page.state = ServicePhase::walking;
     page.walk.model = model;
     page.walk.rate_hz = 50;
+    page.walk.cache = cache;
     page.walk.setup = telemetry->figures().setup;
     page.degraded = {{rt::LackKind::fifo, "SCHED_FIFO is refused", "grant CAP_SYS_NICE"}};
     page.threads = rt::read_busy_threads();
@@ -115,6 +125,22 @@ TEST(View, TopNamesThePartsOfTheLightThatTheFrameHadNoTimeFor) {
     EXPECT_EQ(joined(top_page(now, now, 1, a_style(100, 30))).find("no time for"), std::string::npos);
     now["now"]["dropped_parts"] = {"shadows", "lamps"};
     EXPECT_NE(joined(top_page(now, now, 1, a_style(100, 40))).find("no time for shadows, lamps"), std::string::npos);
+}
+
+TEST(View, TopShowsThePicturesOfAWalkThatHasACache) {
+    const std::string town = "/srv/models/town.walk";
+    const json before = viewed_status(300, town, true), now = viewed_status(350, town, true);
+    EXPECT_EQ(now["now"]["pictures"]["shown"], 1200);
+    EXPECT_EQ(now["totals"]["pictures_made"], 3 * 350);
+    const std::string all = joined(top_page(now, before, 1, a_style(100, 30)));
+    EXPECT_NE(all.find("pictures 1 200 shown, 1 198 of them reused; 17 boxes as triangles; 28 MiB"), std::string::npos) << all;
+    EXPECT_NE(all.find("a second: 150 made, in 2.20 ms a frame; 20 items in place"), std::string::npos) << all;
+    const std::string first = joined(top_page(now, json(), 0, a_style(100, 30)));
+    EXPECT_NE(first.find("a second: - made, in - ms a frame"), std::string::npos) << "no rate without an earlier page\n" << first;
+    const json without = viewed_status(350);
+    EXPECT_TRUE(without["now"]["pictures"].is_null());
+    EXPECT_EQ(joined(top_page(without, without, 1, a_style(100, 30))).find("pictures"), std::string::npos);
+    EXPECT_GT(top_page(viewed_status(0, town, true), json(), 0, {}).size(), 3U) << "before the first frame";
 }
 
 TEST(View, ASkippedSlotIsAColumnOfItsOwn) {

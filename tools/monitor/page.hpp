@@ -24,6 +24,7 @@ std::string_view service_phase_name(ServicePhase state);
 struct MonitoredWalk {
     std::string model, path, selector, backend, renderer, clock;
     double rate_hz = 0;
+    bool cache = false;  ///< pictures may be made while walking
     rt::TelemetrySetup setup;
     rt::Granted granted;
 };

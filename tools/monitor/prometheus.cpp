@@ -197,6 +197,11 @@ void add_work(Exposition& e, const Figures& f) {
     e.counter("surefoot_rest_frames_total", "Frames that drew no cut, because the eye was at rest.", f.rest_frames);
     e.counter("surefoot_broken_guarantees_total", "Frames below the accuracy that is guaranteed.", f.broken_guarantees);
     e.counter("surefoot_trilinear_frames_total", "Frames whose textures blend two mip levels.", f.trilinear_frames);
+    e.counter("surefoot_pictures_shown_total", "Pictures of the image cache that frames showed.", f.pictures_shown);
+    e.counter("surefoot_pictures_made_total", "Pictures that the image cache made.", f.pictures_made);
+    e.counter("surefoot_picture_captures_seconds_total", "Predicted time of making these pictures.", f.captures_us * 1e-6);
+    e.counter("surefoot_uncovered_items_total", "Items drawn in place of pictures that were not valid any more.",
+              f.uncovered_items);
     e.counter("surefoot_switches_total", "Nodes whose form changed between frames.", f.switches);
     e.counter("surefoot_triangles_total", "Triangles drawn.", f.triangles);
     e.family("surefoot_page_faults_total", "counter", "Page faults of the frame thread in its own code.");
@@ -249,6 +254,8 @@ void add_now(Exposition& e, const MonitorPage& p) {
     e.gauge("surefoot_guaranteed_accuracy_per_radian", "Accuracy that frames guarantee; 0: none.",
             any ? double{f.last.guaranteed_accuracy} : unknown);
     e.gauge("surefoot_accuracy_least_per_radian", "Least accuracy of the last 256 frames.", any ? min_accuracy : unknown);
+    e.gauge("surefoot_picture_memory_bytes", "Of all pictures that the image cache holds.",
+            any ? static_cast<double>(f.last.picture_bytes) : unknown);
     e.gauge("surefoot_prepared_age_frames", "Age of the prepared set that the newest frame used; 1 is the newest possible.",
             any ? f.last.prepared_age : unknown);
     e.gauge("surefoot_last_frame_age_seconds", "Time since the end of the newest frame that the monitor has received.",

@@ -97,6 +97,10 @@ ordered_json totals_json(const Figures& f) {
     j["rest_frames"] = f.rest_frames;
     j["trilinear_frames"] = f.trilinear_frames;
     j["broken_guarantees"] = f.broken_guarantees;
+    j["pictures_shown"] = f.pictures_shown;
+    j["pictures_made"] = f.pictures_made;
+    j["captures_ms"] = f.captures_us * 1e-3;
+    j["uncovered_items"] = f.uncovered_items;
     j["stolen_ms"] = static_cast<double>(f.stolen_ns) * 1e-6;
     j["preempted_ms"] = static_cast<double>(f.preempted_ns) * 1e-6;
     return j;
@@ -108,6 +112,20 @@ ordered_json dropped_json(const rt::FrameRecord& frame) {
     for (std::size_t i = 0; i < rt::switch_count; ++i)
         if (frame.dropped_parts[i].dropped) names.push_back(std::string(rt::light_switches[i].name));
     return names;
+}
+
+/// The image cache in the newest frame; null where the walk has none.
+ordered_json pictures_json(const MonitorPage& p) {
+    const rt::FrameRecord& f = p.figures->last;
+    if (!p.walk.cache || p.figures->frames == 0) return nullptr;
+    return {{"shown", f.pictures},
+            {"made", f.pictures_made},
+            {"reused", f.pictures_reused},
+            {"boxes_as_triangles", f.boxes_as_triangles},
+            {"bytes", f.picture_bytes},
+            {"draw_ms", double{f.pictures_us} * 1e-3},
+            {"make_ms", double{f.captures_us} * 1e-3},
+            {"uncovered_items", f.uncovered_items}};
 }
 
 ordered_json times_json(const Figures& f) {
@@ -143,6 +161,7 @@ ordered_json walk_json(const MonitoredWalk& w) {
             {"renderer", w.renderer},
             {"clock", w.clock},
             {"rate_hz", w.rate_hz},
+            {"cache", w.cache},
             {"period_ms", static_cast<double>(w.setup.period_ns) / 1e6},
             {"late", std::string(rt::name_of(w.setup.late))},
             {"rt",
@@ -217,6 +236,7 @@ std::string status_json(const MonitorPage& p) {
                 {"at_rest", f.last.at_rest},
                 {"rest_samples", f.last.rest_samples},
                 {"dropped_parts", dropped_json(f.last)},
+                {"pictures", pictures_json(p)},
                 {"triangles", f.last.triangles},
                 {"nodes", f.last.items},
                 {"standing_still", f.last.stopped}};

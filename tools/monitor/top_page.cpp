@@ -101,6 +101,20 @@ std::string guarantee_line(const json& s, const TerminalStyle& style, double gua
         grouped(number_at(s, "/totals/broken_guarantees")));
 }
 
+/// The image cache: what the newest frame shows, and what is made and lost a second.
+void add_pictures(const json& s, const json& before, double between_s, std::vector<std::string>& lines) {
+    if (!flag_at(s, "/walk/cache") || !(number_at(s, "/recent/frames") > 0)) return;
+    lines.push_back(fmt::format("pictures {} shown, {} of them reused; {} boxes as triangles; {}",
+                                grouped(number_at(s, "/now/pictures/shown")), grouped(number_at(s, "/now/pictures/reused")),
+                                grouped(number_at(s, "/now/pictures/boxes_as_triangles")),
+                                mebibytes(number_at(s, "/now/pictures/bytes"))));
+    const auto rate = [&](const char* pointer) { return rate_of(s, before, between_s, pointer); };
+    const double per_frame_ms = rate("/totals/captures_ms") / rate("/totals/frames");
+    lines.push_back(fmt::format(
+        "  a second: {} made, in {} ms a frame; {} items in place of failed ones", rate_text(rate("/totals/pictures_made")),
+        std::isfinite(per_frame_ms) ? short_number(per_frame_ms) : "-", rate_text(rate("/totals/uncovered_items"))));
+}
+
 void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     if (!(number_at(s, "/recent/frames") > 0)) return;
     const double period_ms = number_at(s, "/walk/period_ms");
@@ -208,6 +222,7 @@ std::vector<std::string> top_page(const json& status, const json& before, double
     lines.emplace_back();
     add_chart(status, style, lines);
     add_gauges(status, style, lines);
+    add_pictures(status, before, between_s, lines);
     add_events(status, before, between_s, style, lines);
     if (lines.size() + 4 <= style.height) lines.emplace_back();
     add_threads(status, before, between_s, style, lines);
