@@ -155,6 +155,41 @@ TEST_F(ReportFiles, PageNeedsNothingOutsideItself) {
     EXPECT_TRUE(nlohmann::json::accept(*read_text(in("r/walk.json"))));
 }
 
+TEST_F(ReportFiles, ThePageShowsTheImageCacheWhereThereIsOne) {
+    auto records = good_frames(4);
+    records[2].pictures = 100;
+    records[2].pictures_made = 3;
+    records[2].pictures_reused = 97;
+    records[2].boxes_as_triangles = 41;
+    records[2].picture_bytes = 3U << 20U;
+    WalkSummary s;
+    summarize(records, period_ns, s);
+    EXPECT_DOUBLE_EQ(s.pictures.reused_mean, 97.0 / 4);
+    EXPECT_DOUBLE_EQ(s.pictures.as_triangles_mean, 41.0 / 4);
+    EXPECT_NE(to_table(s, false).find("25.0 pictures a frame, 24.2 of them reused; 3 made"), std::string::npos)
+        << to_table(s, false);
+    ReportSnapshot snapshot = snapshot_of(1);
+    snapshot.birds_eye.assign(4U * 20 * 20, 128);
+    snapshot.birds_eye_px = 20;
+    snapshot.new_pictures = 3;
+    snapshot.boxes_as_triangles = 41;
+    ASSERT_TRUE(write_report(in("r"), s, records, std::vector<ReportSnapshot>{snapshot}).ok());
+    const auto page = *read_text(in("r/index.html"));
+    EXPECT_NE(page.find("Red: 3 new pictures. White: 0 reused. Black: 41 boxes"), std::string::npos);
+    EXPECT_NE(page.find("What the image cache does"), std::string::npos) << "the chart";
+    EXPECT_EQ(test::count_of(page, "data:image/jpeg;base64,"), 4U);
+    const auto lines = test::split(*read_text(in("r/ledger.csv")), '\n');
+    const auto names = test::split(lines[0], ','), cells = test::split(lines[3], ',');
+    for (const auto& [name, value] : {std::pair{"pictures_reused", "97"}, {"boxes_as_triangles", "41"}}) {
+        const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+        ASSERT_LT(at, names.size()) << name;
+        EXPECT_EQ(cells[at], value) << name;
+    }
+    summarize(good_frames(4), period_ns, s);
+    ASSERT_TRUE(write_report(in("r"), s, good_frames(4), std::vector<ReportSnapshot>{snapshot_of(1)}).ok());
+    EXPECT_EQ(read_text(in("r/index.html"))->find("mage cache"), std::string::npos);
+}
+
 TEST_F(ReportFiles, NamesCannotBreakThePage) {
     WalkSummary s;
     summarize(good_frames(2), period_ns, s);

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "rt/base/file.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/walk/walk_fixture.hpp"
 #include "tools/report/report.hpp"
 
@@ -13,6 +15,8 @@ namespace {
 TEST(PictureWalk, DrawsAndBuysPicturesWithinTheBudgetAndSaysSo) {
     walk::WalkRequest request = test::Forest::get().virtual_request(50);
     request.cache = true;
+    const test::TemporaryFolder folder;
+    request.report_dir = folder / "report";
     const walk::WalkOutcome outcome = test::walk(request);
     const report::PicturesSummary& pictures = outcome.summary.pictures;
     EXPECT_GT(pictures.made, 0U);
@@ -22,9 +26,16 @@ TEST(PictureWalk, DrawsAndBuysPicturesWithinTheBudgetAndSaysSo) {
     for (const rt::FrameRecord& r : outcome.records) {
         ASSERT_EQ(r.guard_violations, 0U) << r.frame;
         ASSERT_LE(r.captures_us, 0.25F * r.budget_us + 1) << r.frame;
+        ASSERT_LE(r.pictures_reused, r.pictures) << r.frame;
+        ASSERT_GE(r.pictures_reused + r.pictures_made, r.pictures) << r.frame;
     }
     const auto json = nlohmann::json::parse(report::to_json(outcome.summary))["pictures"];
     EXPECT_EQ(json["made"], pictures.made);
+    EXPECT_GT(json["reused_mean"], 0.5);
+    EXPECT_GT(json["boxes_as_triangles_mean"], 1);
+    const std::string page = *read_text(folder / "report/index.html");
+    EXPECT_NE(page.find("The image cache from above"), std::string::npos) << "with the pictures of the path";
+    EXPECT_NE(page.find("Cached pictures"), std::string::npos);
     request.workers = 3;
     const walk::WalkOutcome again = test::walk(request);
     EXPECT_EQ(again.summary.cut_hash, outcome.summary.cut_hash);

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/report/svg.hpp"
@@ -37,6 +39,60 @@ TimeChart over_time(const WalkFrames& walk, std::string label, std::string unit,
 }
 
 double deadline_ms(const WalkFrames& walk) { return static_cast<double>(walk.period_ns) * 1e-6; }
+
+/// One of the parts that are stacked.
+struct StackedPart {
+    std::string_view name;
+    double (*value)(const FrameRecord&);
+};
+
+constexpr std::size_t max_stacked = 5;
+
+/// Means of parts over time, one upon the other. top: of the axis; 0: from the values.
+std::string stacked_chart(const WalkFrames& walk, std::string_view label, std::string_view unit,
+                          std::span<const StackedPart> parts, std::string_view css, double top) {
+    const PlotArea area{52, 24, small_width - 10, 250 - 28};
+    constexpr std::size_t columns = 102;
+    std::vector<std::array<double, max_stacked>> means(columns);
+    std::vector<double> counts(columns);
+    const double end_s = walk.frames.empty() ? 1 : std::max(1e-3, walk.time_s(*walk.frames.back()));
+    for (const FrameRecord* f : walk.frames) {
+        const auto column = std::min(columns - 1, static_cast<std::size_t>(std::max(0.0, walk.time_s(*f) / end_s * columns)));
+        for (std::size_t p = 0; p < parts.size(); ++p) means[column][p] += std::max(0.0, parts[p].value(*f));
+        counts[column] += 1;
+    }
+    double highest = 0;
+    for (std::size_t c = 0; c < columns; ++c) {
+        double sum = 0;
+        for (double& mean : means[c]) {
+            mean /= std::max(1.0, counts[c]);
+            sum += mean;
+        }
+        highest = std::max(highest, sum);
+    }
+    const Scale x{0, end_s, area.left, area.right, false};
+    const Scale y{0, nice_ceiling(top > 0 ? top : std::max(1.0, highest * 1.02)), area.bottom, area.top, false};
+    std::string out = open_chart(small_width, 250, label);
+    out += y_axis(area, y, nice_ticks(0, y.to, 4), unit) + x_axis(area, x, nice_ticks(0, end_s, 5), "s");
+    const double step = (area.right - area.left) / columns;
+    for (std::size_t c = 0; c < columns; ++c) {
+        double sum = 0;
+        for (const double mean : means[c]) sum += mean;
+        // From the last part to the first, each down to the axis: no seams between them.
+        for (std::size_t p = parts.size(); p-- > 0;) {
+            const double mean = means[c][p], high = y(std::min(sum, y.to));
+            sum -= mean;
+            if (mean <= 0) continue;
+            out += fmt::format(
+                "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"stack {}{}\"><title>{}: {:.2f} "
+                "{}</title></rect>",
+                area.left + step * static_cast<double>(c), high, step + 0.2, std::max(0.0, area.bottom - high), css, p,
+                parts[p].name, mean, unit);
+        }
+    }
+    if (top > 0) out += line_between(area.left, y(deadline_ms(walk)), area.right, y(deadline_ms(walk)), "deadline");
+    return out + close_chart();
+}
 
 }  // namespace
 
@@ -98,46 +154,20 @@ std::string frame_histogram(const WalkFrames& walk, double budget_ms) {
 }
 
 std::string phases_chart(const WalkFrames& walk) {
-    struct Phase {
-        std::string_view name;
-        double (*us)(const FrameRecord&);
-    };
-    constexpr std::array<Phase, 5> phases = {
-        {{"wake", wake_us}, {"select", select_us}, {"submit", submit_us}, {"raster", raster_us}, {"present", present_us}}};
-    const PlotArea area{52, 24, small_width - 10, 250 - 28};
-    constexpr std::size_t columns = 102;
-    std::vector<std::array<double, 5>> sums(columns);
-    std::vector<double> counts(columns);
-    const double end_s = walk.frames.empty() ? 1 : std::max(1e-3, walk.time_s(*walk.frames.back()));
-    for (const FrameRecord* f : walk.frames) {
-        const auto column = std::min(columns - 1, static_cast<std::size_t>(std::max(0.0, walk.time_s(*f) / end_s * columns)));
-        for (std::size_t p = 0; p < phases.size(); ++p) sums[column][p] += std::max(0.0, phases[p].us(*f)) * 1e-3;
-        counts[column] += 1;
-    }
-    const Scale x{0, end_s, area.left, area.right, false};
-    const Scale y{0, nice_ceiling(deadline_ms(walk) * 1.04), area.bottom, area.top, false};
-    std::string out = open_chart(small_width, 250, "Where the time of a frame goes: mean of each phase");
-    out += y_axis(area, y, nice_ticks(0, y.to, 4), "ms") + x_axis(area, x, nice_ticks(0, end_s, 5), "s");
-    const double step = (area.right - area.left) / columns;
-    for (std::size_t c = 0; c < columns; ++c) {
-        if (counts[c] == 0) continue;
-        double top = 0;
-        for (const double sum : sums[c]) top += sum / counts[c];
-        // From the last phase to the first, each down to the axis: no seams between them.
-        for (std::size_t p = phases.size(); p-- > 0;) {
-            const double mean = sums[c][p] / counts[c];
-            const double high = y(std::min(top, y.to));
-            top -= mean;
-            if (mean <= 0) continue;
-            out += fmt::format(
-                "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"stack p{}\"><title>{}: {:.2f} "
-                "ms</title></rect>",
-                area.left + step * static_cast<double>(c), high, step + 0.2, std::max(0.0, area.bottom - high), p, phases[p].name,
-                mean);
-        }
-    }
-    out += line_between(area.left, y(deadline_ms(walk)), area.right, y(deadline_ms(walk)), "deadline");
-    return out + close_chart();
+    constexpr std::array<StackedPart, 5> phases = {{{"wake", [](const FrameRecord& f) { return wake_us(f) * 1e-3; }},
+                                                    {"select", [](const FrameRecord& f) { return select_us(f) * 1e-3; }},
+                                                    {"submit", [](const FrameRecord& f) { return submit_us(f) * 1e-3; }},
+                                                    {"raster", [](const FrameRecord& f) { return raster_us(f) * 1e-3; }},
+                                                    {"present", [](const FrameRecord& f) { return present_us(f) * 1e-3; }}}};
+    return stacked_chart(walk, "Where the time of a frame goes: mean of each phase", "ms", phases, "p", deadline_ms(walk) * 1.04);
+}
+
+std::string cache_chart(const WalkFrames& walk) {
+    constexpr std::array<StackedPart, 3> uses = {
+        {{"made", [](const FrameRecord& f) { return static_cast<double>(f.pictures_made); }},
+         {"reused", [](const FrameRecord& f) { return static_cast<double>(f.pictures_reused); }},
+         {"as triangles", [](const FrameRecord& f) { return static_cast<double>(f.boxes_as_triangles); }}}};
+    return stacked_chart(walk, "What the image cache does: mean boxes of a frame", "boxes", uses, "u", 0);
 }
 
 std::string budget_chart(const WalkFrames& walk) {

@@ -46,6 +46,8 @@ struct WalkFrames {
 std::string frame_time_chart(const WalkFrames& walk, double budget_ms);
 std::string frame_histogram(const WalkFrames& walk, double budget_ms);
 std::string phases_chart(const WalkFrames& walk);
+/// Pictures of the image cache, made and reused, and boxes that are drawn as triangles.
+std::string cache_chart(const WalkFrames& walk);
 std::string budget_chart(const WalkFrames& walk);
 std::string wake_chart(const WalkFrames& walk);
 std::string accuracy_chart_over_time(const WalkFrames& walk);

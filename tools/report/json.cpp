@@ -187,6 +187,8 @@ Json seat_of(const SeatSummary& s) {
 
 Json of_pictures(const PicturesSummary& p) {
     return {{"drawn_mean", rounded(p.drawn_mean)},
+            {"reused_mean", rounded(p.reused_mean)},
+            {"boxes_as_triangles_mean", rounded(p.as_triangles_mean)},
             {"made", p.made},
             {"max_bytes", p.max_bytes},
             {"draw_us", rounded(p.draw_us_mean)},

@@ -38,7 +38,7 @@ void put_dropped(fmt::memory_buffer& row, const FrameRecord& f, bool fell) {
 }
 
 // clang-format off
-constexpr std::array<Column, 98> columns = {{
+constexpr std::array<Column, 100> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -124,6 +124,8 @@ constexpr std::array<Column, 98> columns = {{
     {"shadow_shown", [](auto& r, auto& f) { add(r, "{:d}", f.shadow_shown); }},
     {"pictures", [](auto& r, auto& f) { add(r, "{}", f.pictures); }},
     {"pictures_made", [](auto& r, auto& f) { add(r, "{}", f.pictures_made); }},
+    {"pictures_reused", [](auto& r, auto& f) { add(r, "{}", f.pictures_reused); }},
+    {"boxes_as_triangles", [](auto& r, auto& f) { add(r, "{}", f.boxes_as_triangles); }},
     {"pictures_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.pictures_us); }},
     {"captures_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.captures_us); }},
     {"picture_bytes", [](auto& r, auto& f) { add(r, "{}", f.picture_bytes); }},

@@ -82,6 +82,9 @@ std::string picture_section(const WalkSummary& s, const WalkFrames& walk, std::s
     out += s.misses > 0 ? card("Misses by cause", "One cause per miss, from the measurements of that frame.", cause_chart(s))
                         : card("Switches", "Nodes drawn in another form than in the previous frame. Fewer is better.",
                                switches_chart(walk));
+    if (s.pictures.any())
+        out += fmt::format("<div class=\"card\"><h3>The image cache</h3>{}{}</div>\n",
+                           legend({{"u0", "new pictures"}, {"u1", "reused"}, {"u2", "boxes as triangles"}}), cache_chart(walk));
     return out + "</div>\n" + snapshot_cards(s, walk.snapshots_s, snapshots) + worst_form_cards(s);
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -15,7 +16,7 @@ namespace surefoot::report {
 
 namespace {
 
-constexpr int picture_quality = 84;
+constexpr int picture_quality = 84, drawing_quality = 95;
 
 std::string file_name(const std::string& path) { return escaped(std::filesystem::path(path).filename().string()); }
 
@@ -69,6 +70,14 @@ std::string snapshot_card(const ReportSnapshot& snapshot, std::size_t number, do
     if (!snapshot.drawn.empty())
         out += fmt::format("<figure><div class=\"map\">{}</div><figcaption>From above: {} nodes drawn</figcaption></figure>\n",
                            top_view(snapshot), grouped(static_cast<double>(snapshot.drawn.size())));
+    if (!snapshot.birds_eye.empty())
+        out += fmt::format(
+            "<figure class=\"birds-eye\"><img loading=\"lazy\" alt=\"the image cache from above\" src=\"{}\"><figcaption>The "
+            "image "
+            "cache from above. Red: {} new pictures. White: {} reused. Black: {} boxes drawn as triangles. Small squares: new "
+            "pictures for later frames. Blue: the eye</figcaption></figure>\n",
+            jpeg_data_uri(snapshot.birds_eye, snapshot.birds_eye_px, snapshot.birds_eye_px, drawing_quality),
+            snapshot.new_pictures, snapshot.reused_pictures, snapshot.boxes_as_triangles);
     return out + "</div></section>\n";
 }
 
@@ -137,6 +146,11 @@ std::string tiles(const WalkSummary& s) {
                 s.model_triangles > 0
                     ? fmt::format("a frame, of {} in the model", short_number(static_cast<double>(s.model_triangles)))
                     : fmt::format("a frame, at most {}", short_number(static_cast<double>(s.triangles_max))));
+    if (s.pictures.any())
+        out += tile("Cached pictures", fmt::format("{:.0f}", s.pictures.drawn_mean), "a frame",
+                    fmt::format("{:.1f} made, {:.0f} boxes as triangles; up to {:.1f} MiB",
+                                static_cast<double>(s.pictures.made) / static_cast<double>(std::max<std::uint64_t>(1, s.frames)),
+                                s.pictures.as_triangles_mean, static_cast<double>(s.pictures.max_bytes) / 1048576.0));
     if (s.rest_frames > 0)
         out += tile("At rest", fmt::format("{}", s.rest_frames), "frames",
                     fmt::format("{} in full detail, up to {} samples", s.rested_frames, s.rest_samples));

@@ -153,11 +153,14 @@ struct DroppedSummary {
 /// What the image cache did in a walk. Times are predictions.
 struct PicturesSummary {
     double drawn_mean = 0;                      ///< in a frame's picture
+    double reused_mean = 0;                     ///< of these: made by earlier frames
+    double as_triangles_mean = 0;               ///< boxes in view whose contents no picture shows
     std::uint64_t made = 0;                     ///< bought
     std::uint64_t max_bytes = 0;                ///< of the pictures that were held
     double draw_us_mean = 0, make_us_mean = 0;  ///< of a frame
     double make_us_max = 0;
     std::uint64_t uncovered = 0;  ///< items that were drawn in place of pictures that were not valid any more
+    [[nodiscard]] bool any() const { return made > 0 || drawn_mean > 0; }
 };
 
 /// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
@@ -246,7 +249,10 @@ struct ReportSnapshot {
     std::vector<Rect> drawn;
     std::array<double, 3> eye{}, forward{};
     double left_rad = -0.5, right_rad = 0.5;  ///< of forward: the sides of the view
-    std::array<double, 4> world_xz{};         ///< min x, min z, max x, max z
+    /// Bird's-eye view of the image cache, RGBA8, birds_eye_px on each side; empty without one. Its boxes by what they show.
+    std::vector<std::uint8_t> birds_eye;
+    std::uint32_t birds_eye_px = 0, new_pictures = 0, reused_pictures = 0, boxes_as_triangles = 0;
+    std::array<double, 4> world_xz{};  ///< min x, min z, max x, max z
 };
 
 /// One compared picture of a walk, without its pixels.

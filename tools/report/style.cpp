@@ -82,6 +82,7 @@ svg.chart{display:block;width:100%;height:auto;overflow:visible}
 .chip b{color:var(--ink);font-weight:600}
 .views{display:grid;grid-template-columns:1fr 1fr;gap:14px}
 figure{margin:0;min-width:0}
+figure.birds-eye img{max-width:420px;image-rendering:pixelated}
 figure img{display:block;width:100%;height:auto;border-radius:8px;background:#000}
 figure .map{border:1px solid var(--rule);border-radius:8px;overflow:hidden;background:var(--bg)}
 figcaption{font-size:13px;color:var(--soft);margin-top:6px}
@@ -94,6 +95,8 @@ code{font:13px/1.5 ui-monospace,SFMono-Regular,Menlo,Consolas,monospace}
 .legend span{display:inline-flex;align-items:center;gap:6px}
 .legend i{width:11px;height:11px;border-radius:3px;display:inline-block}
 .c0{background:var(--s0)}.c1{background:var(--s1)}.c2{background:var(--s2)}.c3{background:var(--s3)}.c4{background:var(--s4)}.c5{background:var(--s5)}.c6{background:var(--s6)}.c7{background:var(--s7)}
+.u0{background:#d02824}.u1{background:#fafafa}.u2{background:#101010}.u1,.u2{outline:1px solid var(--rule)}
+.chart .u0{fill:#d02824}.chart .u1{fill:#fafafa}.chart .u2{fill:#101010}.chart .u1,.chart .u2{stroke:var(--rule);stroke-width:.4}
 .c8{background:var(--soft);opacity:.55}
 table{border-collapse:collapse;width:100%;font-size:14px;font-variant-numeric:tabular-nums}
 th,td{text-align:right;padding:6px 10px;border-bottom:1px solid var(--rule);vertical-align:top}

@@ -133,6 +133,8 @@ void picture_figures(std::span<const FrameRecord* const> frames, WalkSummary& s)
     for (const FrameRecord* f : frames) {
         s.pictures.drawn_mean += f->pictures;
         s.pictures.made += f->pictures_made;
+        s.pictures.reused_mean += f->pictures_reused;
+        s.pictures.as_triangles_mean += f->boxes_as_triangles;
         s.pictures.max_bytes = std::max(s.pictures.max_bytes, f->picture_bytes);
         s.pictures.draw_us_mean += static_cast<double>(f->pictures_us);
         s.pictures.make_us_mean += static_cast<double>(f->captures_us);
@@ -140,7 +142,8 @@ void picture_figures(std::span<const FrameRecord* const> frames, WalkSummary& s)
         s.pictures.uncovered += f->uncovered_items;
     }
     const double count = static_cast<double>(std::max<std::size_t>(frames.size(), 1));
-    for (double* mean : {&s.pictures.drawn_mean, &s.pictures.draw_us_mean, &s.pictures.make_us_mean}) *mean /= count;
+    PicturesSummary& p = s.pictures;
+    for (double* mean : {&p.drawn_mean, &p.reused_mean, &p.as_triangles_mean, &p.draw_us_mean, &p.make_us_mean}) *mean /= count;
 }
 
 void rest_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {

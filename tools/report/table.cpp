@@ -68,6 +68,12 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
         table.row("at rest", fmt::format("{} frames, {} of them in full detail after at most {:.0f} ms, {} samples",
                                          s.rest_frames, s.rested_frames, s.rest_ms, s.rest_samples));
     if (s.picture.frames > 0) table.row("picture", picture_words(s.picture));
+    if (s.pictures.any())
+        table.row(
+            "image cache",
+            fmt::format("{:.1f} pictures a frame, {:.1f} of them reused; {} made; {:.1f} boxes a frame as triangles; {:.1f} MiB",
+                        s.pictures.drawn_mean, s.pictures.reused_mean, s.pictures.made, s.pictures.as_triangles_mean,
+                        static_cast<double>(s.pictures.max_bytes) / 1048576.0));
     if (s.unused_ms.max > 0)
         table.row("unused", fmt::format("{:.1f} ms of the period (mean), {:.1f} (p99), where value is missing", s.unused_ms.mean,
                                         s.unused_ms.p99));
