@@ -294,7 +294,8 @@ void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, 
 /// After begin_pictures().
 void Engine::Impl::count_boxes(SubmitReport& report) {
     if (!pictures.any()) return;
-    const cache::FrameBoxCounts counts = cache::mark_boxes(pictures.boxes(), shown_boxes, made_boxes, frustum, frame_boxes);
+    const std::span<const cache::Index> shown = shown_pictures.empty() ? std::span<const cache::Index>() : pictures.drawn();
+    const cache::FrameBoxCounts counts = cache::mark_boxes(pictures.boxes(), shown, made_boxes, frustum, frame_boxes);
     report.pictures_reused = counts.reused;
     report.boxes_as_triangles = counts.as_triangles;
 }

@@ -111,7 +111,8 @@ public:
     /// What a frame draws for a covered set: the largest valid pictures in view, back to front. No eye but one: radius 0. Valid
     /// until the next call.
     const CacheDraws& draws(const model::CoverBits& set, const ViewPixels& pixels, const model::Frustum& frustum);
-    [[nodiscard]] std::span<const Index> unserved() const { return draws_.unserved; }  ///< of the last draws()
+    [[nodiscard]] std::span<const Index> drawn() const { return draws_.boxes; }        ///< of the last draws()
+    [[nodiscard]] std::span<const Index> unserved() const { return draws_.unserved; }  ///< the same
     /// Predicted, to draw a box's picture.
     [[nodiscard]] float draw_us(Index box, const dvec3& eye, double pixel_rad, double view_px) const;
 
