@@ -126,9 +126,9 @@ std::vector<Entry> light_entries() {
              "Where time is short, a frame leaves out sunlight, shadows, lamps or fog, if forms show more for it; false: all are "
              "drawn.",
              &S::buy_effects),
-        flag("cache",
-             "The image cache: what is far is drawn as pictures that are made while walking, each right to a pixel; false: none.",
-             &S::cache),
+        choice("cache", rt::image_caches,
+               "The image cache: what is far is drawn as pictures that are made while walking, each right to a pixel.",
+               &S::cache),
     };
 }
 

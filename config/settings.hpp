@@ -55,13 +55,13 @@ struct Settings : rt::Switches {
     int workers = 0;      ///< 0: one a core beside the frame thread's
     int rasterisers = 0;  ///< 0: one a core
     bool fifo = true, strict = false, in_frame_check = true, occlusion = true, control = false;
-    double hour = -1;            ///< of the day; -1: the model's own light stays
-    double hour_speed = 0;       ///< hours of the day in a minute of the walk
-    bool motion = true;          ///< what animations move; false: all stands as at their start
-    bool buy_effects = false;    ///< frames leave out parts of the light that cost more than they show
-    bool cache = false;          ///< pictures of what is far stand for it, and are made while walking
-    int frame_core = -1;         ///< -1: chosen
-    double rest_after_ms = 500;  ///< 0: never
+    double hour = -1;                            ///< of the day; -1: the model's own light stays
+    double hour_speed = 0;                       ///< hours of the day in a minute of the walk
+    bool motion = true;                          ///< what animations move; false: all stands as at their start
+    bool buy_effects = false;                    ///< frames leave out parts of the light that cost more than they show
+    rt::ImageCache cache = rt::ImageCache::off;  ///< pictures of what is far stand for it, and are made while walking
+    int frame_core = -1;                         ///< -1: chosen
+    double rest_after_ms = 500;                  ///< 0: never
     double slice_us = 1000;
     double hysteresis = 1.25;
     double gestalt = 0;      ///< PrepareOptions::gestalt
@@ -74,7 +74,7 @@ enum class Kind : std::uint8_t { number, integer, flag, choice, colour, file, te
 
 using Member = std::variant<double Settings::*, std::uint32_t Settings::*, int Settings::*, bool Settings::*,
                             std::string Settings::*, rt::LatePolicy Settings::*, rt::ClockKind Settings::*,
-                            rt::TextureFilter Settings::*, rt::WalkingMode Settings::*>;
+                            rt::TextureFilter Settings::*, rt::WalkingMode Settings::*, rt::ImageCache Settings::*>;
 
 /// One row of the schema. min and max hold for number and integer, choices for choice (of an enum: in its order); max for
 /// file and text: bytes.

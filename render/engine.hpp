@@ -44,6 +44,8 @@ struct EngineOptions {
     bool motion = true;  ///< false: what moves stands as at time 0, in pictures at any time and in sets for them
     /// Groups of DeviceOptions::switches are items: a frame leaves out those whose value per us is less than that of forms.
     bool buys_effects = false;
+    /// Pictures of the image cache are kept all round the eye, as fine as at the picture's corner: a turn makes none.
+    bool pictures_all_round = false;
     std::vector<double> effect_hours;  ///< of the day, rising, for which their worth is found; empty: the model's own light
     bool in_frame_check = true;        ///< checks slices against the time left; off only for comparison
 };

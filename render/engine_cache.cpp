@@ -2,6 +2,7 @@
 // after it, and what they cover is drawn by them after the last slice.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "render/cache/validity.hpp"
@@ -14,8 +15,9 @@ namespace surefoot {
 
 namespace {
 
-constexpr double off_course_m = 0.03;    // how far eyes may be beside a straight course in the next frames
-constexpr double may_turn_rad = 0.1;     // while a picture lives, beyond what the next frames may
+constexpr double off_course_m = 0.03;  // how far eyes may be beside a straight course in the next frames
+constexpr double may_turn_rad = 0.1;   // while a picture lives, beyond what the next frames may
+constexpr double all_round_rad = std::numbers::pi;
 constexpr double jump_m = 2;             // in a frame: no course leads there
 constexpr double unlimited_share = 0.1;  // of the budget, for new pictures where nothing limits what a frame spends
 constexpr double limited_share = 0.25;   // the same where forms compete with them
@@ -84,6 +86,7 @@ void Engine::Impl::make_pictures() {
     boxes->price_captures(model, costs);
     cache::WalkCacheOptions how;
     how.layers = device->picture_layers();
+    how.surround = options.pictures_all_round;
     how.picture_us = costs.picture_us;
     how.picture_ns_per_pixel = costs.picture_ns_per_pixel;
     how.capture_us = costs.capture_us;
@@ -119,8 +122,8 @@ const model::CoverBits& Engine::cover(const Pose& now, const prepare::Region& ne
     e.course_known = true;
     // Eyes on the way to the region's middle, and as far beyond it.
     const double way_m = glm::length(next.centre.position - now.position) + off_course_m;
-    e.turn_rad = next.angle_rad;
-    return e.cover_bits = e.pictures.cover(cache::view_pixels(next.centre, e.options.device.viewport, next.angle_rad),
+    e.turn_rad = e.options.pictures_all_round ? all_round_rad : next.angle_rad;
+    return e.cover_bits = e.pictures.cover(cache::view_pixels(next.centre, e.options.device.viewport, e.turn_rad),
                                            std::min(way_m, next.radius_m));
 }
 

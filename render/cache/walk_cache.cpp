@@ -11,16 +11,12 @@ namespace surefoot::cache {
 namespace {
 
 constexpr float min_saving_us = 5;          // less is not worth a picture
-constexpr std::uint64_t relied_frames = 3;  // after which no set relies on what was covered
 constexpr double same_change_frames = 2;    // what is forgotten again so soon was forgotten for one reason
 constexpr double min_life_frames = 4;       // for less, nothing is offered
+constexpr std::uint64_t tight_frames = 16;  // after room was missing, only what finds room is offered
 constexpr double rounded_down = 1 - 1e-6;   // errors are reported in float
 constexpr float new_share = 0.5F;           // of a cost that was measured anew
 constexpr float share_alone = 0.5F;         // of what lies across several boxes, for each by itself
-
-float us_of(const model::FrameCombine& combine, const model::ItemCost& cost) {
-    return combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us;
-}
 
 /// Solid angle of a box's faces that an eye sees; 0 from inside.
 double faces_sr(const Box& box, const dvec3& eye) {
@@ -63,6 +59,11 @@ WalkCache::WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vec
     relies_.resize(count, false);
     draws_.boxes.reserve(count);
     draws_.unserved.reserve(count);
+    if (!options.surround) return;
+    known_from_.resize(count, dvec3(std::numeric_limits<double>::quiet_NaN()));
+    seen_now_.resize(count, false);
+    in_view_.resize(count, false);
+    cell_worth_us_.resize(std::size_t{options.layers} * cells_a_side * cells_a_side);
 }
 
 void WalkCache::forget() {
@@ -137,6 +138,7 @@ bool WalkCache::before_blended(const Box& box) const {
 
 const model::CoverBits& WalkCache::cover(const ViewPixels& pixels, double radius_m) {
     ++frame_;
+    make_room_by_worth();
     look_from(pixels.eye);
     covered_.reset();
     bool any_valid = false;
@@ -192,9 +194,10 @@ void WalkCache::end_costs() {
     for (Index i = boxes_.size(); i-- > 0;) {
         const CacheBox& box = boxes_.tree().boxes[i];
         float& own_us = across_us_[i];
-        if (!set_[i]) own_us += (own_us > 0.0F ? new_share : 1.0F) * (cost_us_[i] - own_us);
+        const bool is_new = !set_[i] && measured(i);
+        if (is_new) own_us += (own_us > 0.0F ? new_share : 1.0F) * (cost_us_[i] - own_us);
         saving_us_[i] = own_us;
-        if (box.child_count == 0 && !set_[i]) value_[i] = shown_value_[i];
+        if (box.child_count == 0 && is_new) value_[i] = shown_value_[i];
         if (box.child_count > 0) value_[i] = {};
         for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) {
             saving_us_[i] += saving_us_[child];
@@ -202,6 +205,7 @@ void WalkCache::end_costs() {
             value_[i].missing += value_[child].missing;
         }
     }
+    planned_ = false;
 }
 
 float WalkCache::draw_us(Index box, const dvec3& eye, double pixel_rad, double view_px) const {
@@ -210,13 +214,17 @@ float WalkCache::draw_us(Index box, const dvec3& eye, double pixel_rad, double v
 }
 
 /// Of a picture of the box in a frame, without its own time.
-float WalkCache::worth_us(Index box, double us_per_value) const {
+float WalkCache::full_worth_us(Index box, double us_per_value) const {
     return saving_us_[box] + static_cast<float>(us_per_value) * value_[box].missing;
+}
+
+float WalkCache::us_of(const model::FrameCombine& combine, const model::ItemCost& cost) {
+    return combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us;
 }
 
 /// A new picture of the box, where it pays. False: it does not.
 bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) const {
-    const float saves_us = worth_us(box, view.us_per_value) - draw_us(box, view.course.eye, view.pixel_rad, view.view_px);
+    const float saves_us = full_worth_us(box, view.us_per_value) - draw_us(box, view.course.eye, view.pixel_rad, view.view_px);
     if (!(saves_us > min_saving_us)) return false;
     if (before_blended(boxes_.filled(box))) return false;
     const auto prospect = prospect_of(boxes_.filled(box), view.course, allowed_rad(box, boxes_.filled(box), view.pixels));
@@ -231,15 +239,22 @@ bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) con
     return offer.gain_us >= static_cast<float>(options_.pays) * offer.price_us;
 }
 
-/// A few boxes a frame, in turns.
+/// A few boxes a frame, in turns. With a surround, most of them in view: they are found first after a jump.
 void WalkCache::refresh_facts(const PlanView& view) {
-    std::uint32_t left = options_.prospects;
+    std::uint32_t left = options_.surround ? options_.prospects - options_.prospects / 4 : options_.prospects;
+    work_out_facts(view, next_fact_, left, true);
+    if (options_.surround) work_out_facts(view, next_beside_, left += options_.prospects / 4, false);
+}
+
+void WalkCache::work_out_facts(const PlanView& view, Index& next, std::uint32_t& left, bool in_view) {
     for (Index tested = 0; tested < boxes_.size() && left > 0; ++tested) {
-        const Index i = next_fact_;
-        next_fact_ = i + 1 < boxes_.size() ? i + 1 : 0;
+        const Index i = next;
+        next = i + 1 < boxes_.size() ? i + 1 : 0;
+        if (options_.surround && in_view_[i] != in_view) continue;
         facts_[i] = {};
-        if (!boxes_.may_have_picture(i) || !(worth_us(i, view.us_per_value) > min_saving_us)) continue;
-        if (!model::visible(*view.frustum, boxes_.filled(i))) continue;
+        estimate(i, view);
+        if (!boxes_.may_have_picture(i) || !(full_worth_us(i, view.us_per_value) > min_saving_us)) continue;
+        if (!options_.surround && !model::visible(*view.frustum, boxes_.filled(i))) continue;
         --left;
         CacheOffer offer;
         if (!work_out(i, view, offer)) continue;
@@ -260,10 +275,10 @@ bool WalkCache::serves_on(Index box, const PlanView& view) const {
 /// Of a picture that serves for a while: all that it saves, since it is paid for. Else what a new one would bring.
 float WalkCache::own_net_us(Index box, const PlanView& view) const {
     if (!(facts_[box].net_us > 0.0F) && !held_[box].any()) return 0;
-    if (!model::visible(*view.frustum, boxes_.filled(box))) return 0;
+    if (!options_.surround && !model::visible(*view.frustum, boxes_.filled(box))) return 0;
     if (!serves_on(box, view)) return facts_[box].net_us;
     return std::max(facts_[box].net_us,
-                    worth_us(box, view.us_per_value) - draw_us(box, view.course.eye, view.pixel_rad, view.view_px));
+                    full_worth_us(box, view.us_per_value) - draw_us(box, view.course.eye, view.pixel_rad, view.view_px));
 }
 
 void WalkCache::choose(Index i, const PlanView& view) {
@@ -273,7 +288,8 @@ void WalkCache::choose(Index i, const PlanView& view) {
         for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) choose(child, view);
         return;
     }
-    if (!serves_on(i, view)) candidates_.push_back({i, own_us_[i]});
+    if (serves_on(i, view)) return;
+    candidates_.push_back({i, own_us_[i], !options_.surround || in_view_[i]});
 }
 
 std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
@@ -285,6 +301,10 @@ std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
     view.course.max_frames = std::min(view.course.max_frames, frames_to_forget());
     if (view.course.max_frames < min_life_frames) return offers_;
     look_from(view.course.eye);
+    seen_ = *view.frustum;
+    seen_from_ = view.course.eye;
+    planned_ = true;
+    for (Index i = 0; i < in_view_.size(); ++i) in_view_[i] = model::visible(seen_, boxes_.filled(i));
     refresh_facts(view);
     for (Index i = boxes_.size(); i-- > 0;) {
         const CacheBox& box = boxes_.tree().boxes[i];
@@ -294,12 +314,17 @@ std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
         best_us_[i] = std::max(own_us_[i], below);
     }
     choose(0, view);
-    std::sort(candidates_.begin(), candidates_.end(),
-              [](const Candidate& a, const Candidate& b) { return a.net_us != b.net_us ? a.net_us > b.net_us : a.box < b.box; });
+    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+        if (a.in_view != b.in_view) return a.in_view;
+        return a.net_us != b.net_us ? a.net_us > b.net_us : a.box < b.box;
+    });
     for (const Candidate& candidate : candidates_) {
         if (offers_.size() == options_.max_offers) break;
         CacheOffer offer;
-        if (work_out(candidate.box, view, offer)) offers_.push_back(offer);
+        if (!work_out(candidate.box, view, offer)) continue;
+        if (frame_ < tight_until_ && !find_room(candidate.box, offer.prospect.picture.texels)) continue;
+        if (!candidate.in_view) offer.gain_us *= share_out_of_view;
+        offers_.push_back(offer);
     }
     return offers_;
 }
@@ -324,6 +349,9 @@ bool WalkCache::find_room(Index box, std::uint32_t texels) {
         return true;
     }
     no_room_for_ = texels;
+    if (!options_.surround) return false;
+    tight_until_ = frame_ + tight_frames;
+    if (refused_.texels == 0) refused_ = {texels, worth_us(box, own_us_[box])};
     return false;
 }
 

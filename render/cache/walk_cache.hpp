@@ -17,6 +17,7 @@ namespace surefoot::cache {
 /// How a walk's cache works.
 struct WalkCacheOptions {
     std::uint32_t layers = 0;           ///< of 256 x 256 texels; 0: no pictures
+    bool surround = false;              ///< boxes all round the eye are kept and planned, not only those in view
     double pays = 1.2;                  ///< a picture must save so many times its price while it lives
     std::uint32_t max_offers = 8;       ///< in a frame
     std::uint32_t prospects = 48;       ///< worked out in a frame, beside those of offers
@@ -50,7 +51,7 @@ struct CacheOffer {
 struct PlanView {
     EyeCourse course;
     ViewPixels pixels;
-    const model::Frustum* frustum = nullptr;  ///< of all eyes that the plan is for
+    const model::Frustum* frustum = nullptr;  ///< of all eyes that the plan is for; with a surround: what comes first
     double pixel_rad = 1e-3;                  ///< in the middle of the view
     double view_px = 0;                       ///< of the whole view
     double max_price_us = 0;                  ///< of a picture
@@ -89,7 +90,8 @@ public:
     const model::CoverBits& cover(const ViewPixels& pixels, double radius_m);
 
     /// What the last cut's items cost and show, node by node, and what full detail would show: so much could be saved, and shown
-    /// more. `covered`: of the set of that cut; what lies there is not drawn, so its last cost stays.
+    /// more. `covered`: of the set of that cut; what lies there is not drawn, so its last cost stays. With a surround so does the
+    /// cost of what is not wholly in the view of the last plan(); where none is known, the cost table's price stands for it.
     void begin_costs(const model::CoverBits& covered);
     void add_cost(model::Index node, float us, float value, float full_value);
     void end_costs();
@@ -117,6 +119,10 @@ public:
     [[nodiscard]] float draw_us(Index box, const dvec3& eye, double pixel_rad, double view_px) const;
 
 private:
+    static constexpr std::uint64_t relied_frames = 3;  ///< after which no set relies on what was covered
+    static constexpr float share_out_of_view = 0.25F;  ///< of a saving: so large a part of all directions is seen at once
+    static constexpr std::uint32_t cells_a_side = layer_texels / min_slot_texels;
+
     /// What a new picture of a box would bring, as it was worked out a few frames ago.
     struct Fact {
         float net_us = 0;  ///< a frame; 0: no picture, or none that pays
@@ -132,10 +138,17 @@ private:
     struct Candidate {
         Index box = 0;
         float net_us = 0;
+        bool in_view = true;
     };
-    [[nodiscard]] float worth_us(Index box, double us_per_value) const;
+    /// A picture for which there was no room.
+    struct Refused {
+        std::uint32_t texels = 0;  ///< of a side; 0: none was refused
+        float worth_us = 0;
+    };
+    [[nodiscard]] float full_worth_us(Index box, double us_per_value) const;
     [[nodiscard]] bool work_out(Index box, const PlanView& view, CacheOffer& offer) const;
     void refresh_facts(const PlanView& view);
+    void work_out_facts(const PlanView& view, Index& next, std::uint32_t& left, bool in_view);
     [[nodiscard]] float own_net_us(Index box, const PlanView& view) const;
     [[nodiscard]] Index common_box(Index a, Index b) const;
     void choose(Index box, const PlanView& view);
@@ -146,6 +159,11 @@ private:
     [[nodiscard]] double allowed_rad(Index box, const Box& seen, const ViewPixels& pixels) const;
     void look_from(const dvec3& eye);
     [[nodiscard]] bool before_blended(const Box& box) const;
+    [[nodiscard]] static float us_of(const model::FrameCombine& combine, const model::ItemCost& cost);
+    [[nodiscard]] bool measured(Index box);
+    void estimate(Index box, const PlanView& view);
+    void make_room_by_worth();
+    [[nodiscard]] float worth_us(Index box, float net_us) const;
 
     SceneBoxes boxes_;
     WalkCacheOptions options_;
@@ -178,6 +196,20 @@ private:
     Slots trial_;                    ///< of take()
     std::uint32_t no_room_for_ = 0;  ///< texels of a side, since plan(); 0: nothing failed
     std::vector<bool> relies_;       ///< by box: a set needs something below it
+
+    // With a surround alone.
+    model::Frustum seen_;                  ///< of the last plan()
+    dvec3 seen_from_{0.0};                 ///< its eye
+    bool planned_ = false;                 ///< since the last end_costs()
+    std::vector<dvec3> known_from_;        ///< by box: the eye for which its cost was measured; NaN: it was not
+    std::vector<bool> seen_now_;           ///< by box: measured by the last cut
+    std::vector<bool> in_view_;            ///< by box: of the last plan()
+    Index next_beside_ = 0;                ///< as next_fact_, of boxes out of view
+    double known_us_ = 0, priced_us_ = 0;  ///< of boxes in view, since facts began anew: by the cut, by the cost table
+    float spent_share_ = 1;                ///< of the cost table's price, that cuts spend
+    Refused refused_;                      ///< since the last cover(), the first
+    std::uint64_t tight_until_ = 0;        ///< the frame until which offers must find room
+    std::vector<float> cell_worth_us_;     ///< by square of 64 texels
     CacheDraws draws_;
 };
 

@@ -1,5 +1,5 @@
-// Modes of a walk that several rooms know: the policy for late frames, the clock, the texture filter; and what became of a
-// guarantee. Enums, with their names in settings and reports.
+// Modes of a walk that several rooms know: the policy for late frames, the clock, the texture filter, the image cache; and what
+// became of a guarantee. Enums, with their names in settings and reports.
 #pragma once
 
 #include <array>
@@ -28,6 +28,10 @@ enum class TextureFilter : std::uint8_t { automatic, bilinear, trilinear, adapti
 
 /// Whether a steered eye walks: on floors and around walls, or flies through them.
 enum class WalkingMode : std::uint8_t { automatic, walk, fly };
+
+/// Of what the image cache keeps pictures. view: of boxes in view, as fine as where they are seen. surround: of boxes all round
+/// the eye, as fine as at the picture's corner, so that a turn makes none anew.
+enum class ImageCache : std::uint8_t { off, view, surround };
 
 /// What became of the accuracy that a frame guarantees. none: nothing is guaranteed. Why it was not kept: over_budget: no
 /// cut of it was found within the budget. no_form: what is prepared has nothing better. stand_ins: the frame ran out of time, so
@@ -64,10 +68,17 @@ inline constexpr std::array texture_filters = {
     Named{"adaptive", "trilinear; on a software driver only while all is in full detail and time is left"},
 };
 
+inline constexpr std::array image_caches = {
+    Named{"off", "none: all is drawn as forms"},
+    Named{"view", "of what is in view"},
+    Named{"surround", "of what is all round the eye: a turn needs no new ones, a step more of them"},
+};
+
 constexpr std::string_view name_of(Guarantee guarantee) { return guarantee_names[static_cast<std::size_t>(guarantee)]; }
 constexpr std::string_view name_of(ShownBy by) { return shown_by_names[static_cast<std::size_t>(by)]; }
 constexpr std::string_view name_of(LatePolicy late) { return late_policies[static_cast<std::size_t>(late)].name; }
 constexpr std::string_view name_of(ClockKind clock) { return clock_kinds[static_cast<std::size_t>(clock)].name; }
+constexpr std::string_view name_of(ImageCache cache) { return image_caches[static_cast<std::size_t>(cache)].name; }
 constexpr std::string_view name_of(TextureFilter filter) { return texture_filters[static_cast<std::size_t>(filter)].name; }
 
 }  // namespace surefoot::rt

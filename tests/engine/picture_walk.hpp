@@ -21,6 +21,7 @@ struct PictureWalkOptions {
     gl::BackendKind kind = gl::BackendKind::null;
     double rest_after_ms = 0;
     double max_error_rad = 0;
+    bool all_round = false;
 };
 
 /// Prepares each frame's set from what the frame before knew, as the virtual clock of a walk does.
@@ -36,6 +37,7 @@ public:
         options.selector = how.selector;
         options.rest_after_ms = how.rest_after_ms;
         options.max_error_rad = how.max_error_rad;
+        options.pictures_all_round = how.all_round;
         auto opened = Engine::open(model, model::default_costs(), options);
         absent_ = !opened.ok() && opened.error().kind == ErrorKind::unsupported;
         EXPECT_TRUE(opened.ok() || absent_);

@@ -178,7 +178,8 @@ void add_light(CLI::App* c, const std::shared_ptr<SettingArguments>& a) {
         "or longer");
     c->add_flag(
         "--cache", a->cache,
-        "Draw what is far as pictures that are made while walking, each right to a pixel. New ones are bought where they pay");
+        "Draw what is far as pictures that are made while walking, each right to a pixel. New ones are bought where they pay. "
+        "--cache=surround keeps those all round the eye, so that a turn needs no new ones; --cache=off: none");
 }
 
 /// What real time must have, and what is switched off or measured for comparison.

@@ -86,7 +86,11 @@ Result<config::Configuration> read_settings(const SettingArguments& a) {
     if (a.no_occlusion) c.values.occlusion = false;
     if (a.no_motion) c.values.motion = false;
     if (a.buy_effects) c.values.buy_effects = true;
-    if (a.cache) c.values.cache = true;
+    if (!a.cache.empty()) {
+        const bool alone = a.cache == "true", none = a.cache == "false";
+        const auto named = alone ? rt::name_of(rt::ImageCache::view) : none ? rt::name_of(rt::ImageCache::off) : a.cache;
+        if (auto ok = put_setting(c, "--cache", "cache", std::string(named)); !ok) return ok.error();
+    }
     for (std::size_t i = 0; i < rt::switch_count; ++i)
         if (a.no_light[i]) c.values.*rt::light_switches[i].on = false;
     return c;

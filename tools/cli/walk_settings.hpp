@@ -20,7 +20,8 @@ struct SettingArguments {
         std::string flag, key, text;
     };
     std::vector<Setting> values;  ///< in the order given
-    bool no_fifo = false, no_check = false, no_occlusion = false, no_motion = false, buy_effects = false, cache = false;
+    bool no_fifo = false, no_check = false, no_occlusion = false, no_motion = false, buy_effects = false;
+    std::string cache;                              ///< "true": the option alone
     std::array<bool, rt::switch_count> no_light{};  ///< by switch
 };
 

@@ -123,7 +123,8 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others, model::Ef
     const bool may_switch = !r.input_file.empty() || (r.may_steer && r.backend == window_input);
     options.device.switches = switch_groups(r, may_switch || r.buy_effects, called_for);
     options.buys_effects = r.buy_effects;
-    options.device.picture_layers = r.cache ? cache_layers : 0;
+    options.device.picture_layers = r.cache != rt::ImageCache::off ? cache_layers : 0;
+    options.pictures_all_round = r.cache == rt::ImageCache::surround;
     options.motion = r.motion;
     options.effect_hours = effect_hours(r);
     options.device.null.cost_scale = r.cost_scale;
@@ -157,7 +158,7 @@ void add_resolution_message(Session& s) {
 
 /// Says where there are no pictures of the image cache.
 void add_cache_message(Session& s) {
-    if (s.request.cache && !s.engine->has_pictures())
+    if (s.request.cache != rt::ImageCache::off && !s.engine->has_pictures())
         s.notes.push_back("cache: There can be no pictures, so that all is drawn as forms. " + s.engine->picture_reason());
 }
 

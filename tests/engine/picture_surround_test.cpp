@@ -1,0 +1,116 @@
+// The image cache of the whole surround: a turn makes nothing anew, and what is seen first is made first.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <vector>
+
+#include "tests/engine/picture_walk.hpp"
+
+namespace surefoot {
+namespace {
+
+using test::holes;
+using test::PictureWalk;
+
+constexpr double period_us = 33'333;
+constexpr std::uint32_t turn_frames = 120;  // 90 degrees a second: as far as sets are prepared for
+
+Pose turned(Pose pose, double rad) {
+    pose.orientation = glm::normalize(glm::angleAxis(rad, dvec3(0, 1, 0)) * pose.orientation);
+    return pose;
+}
+
+/// Trees stand all round.
+Pose in_the_forest(const Engine& engine) {
+    Pose pose = test::forest_pose(engine);
+    pose.position.z = engine.model().nodes[0].box.centre().z;
+    return pose;
+}
+
+/// Stands until no picture was made for a second. Returns the last frame that made one.
+int fill(PictureWalk& walk, const Pose& pose) {
+    int last = 0;
+    for (int i = 0; i < 600 && i <= last + 30; ++i)
+        if (walk.frame(pose, period_us).pictures_made > 0) last = i;
+    return last;
+}
+
+/// Turns once round on the spot.
+struct Turn {
+    std::uint32_t made = 0, frames_with_pictures = 0;
+};
+Turn turn_round(PictureWalk& walk, const Pose& pose) {
+    Turn turn;
+    for (std::uint32_t i = 1; i <= turn_frames; ++i) {
+        const Pose now = turned(pose, 2 * std::numbers::pi * i / turn_frames);
+        const SubmitReport report = walk.frame(now, period_us);
+        turn.made += report.pictures_made;
+        turn.frames_with_pictures += report.pictures > 0 ? 1 : 0;
+        if (i % 8 == 0) {
+            EXPECT_TRUE(holes(walk.engine(), now).empty()) << i;
+        }
+    }
+    return turn;
+}
+
+/// The first turn finds what boxes cost that no cut had drawn, and makes a few more.
+TEST(PictureSurround, ATurnMakesNothingAnew) {
+    PictureWalk surround(test::forest_model(), {.all_round = true}), view(test::forest_model(), {});
+    const Pose pose = in_the_forest(surround.engine());
+    EXPECT_LT(fill(surround, pose), 60) << "it is full within two seconds";
+    fill(view, pose);
+    const Turn of_view = turn_round(view, pose), first = turn_round(surround, pose), then = turn_round(surround, pose);
+    EXPECT_EQ(then.made, 0U);
+    EXPECT_LT(2 * first.made, of_view.made);
+    EXPECT_EQ(first.frames_with_pictures, turn_frames) << "there are pictures in all directions";
+    EXPECT_GT(of_view.made, 10U);
+}
+
+/// Within two seconds of a jump the cache shows what it will show. What is in view comes before the rest.
+TEST(PictureSurround, AJumpFillsTheCacheAgainWithinTwoSeconds) {
+    for (const bool all_round : {false, true}) {
+        PictureWalk walk(test::forest_model(), {.all_round = all_round});
+        const Pose before = in_the_forest(walk.engine());
+        fill(walk, before);
+        Pose pose = turned(before, 2);
+        pose.position.x += 25;
+        std::vector<SubmitReport> after;
+        int last_made = 0;
+        for (int i = 0; i < 90; ++i) {
+            after.push_back(walk.frame(pose, period_us));
+            EXPECT_LE(after.back().captures_us, 0.1 * period_us + 1) << i;
+            if (after.back().pictures_made > 0) last_made = i;
+            if (i % 10 == 0) {
+                EXPECT_TRUE(holes(walk.engine(), pose).empty()) << i;
+            }
+        }
+        const auto view_filled =
+            std::ranges::find_if(after, [&](const auto& r) { return r.triangles <= after.back().triangles; }) - after.begin();
+        EXPECT_GT(after.back().pictures, 0U);
+        EXPECT_GT(after.front().triangles, after.back().triangles);
+        EXPECT_GT(last_made, 0);
+        EXPECT_LT(last_made, 60);
+        EXPECT_LT(view_filled, 60);
+        if (all_round) {
+            EXPECT_LT(view_filled, last_made) << "what is in view comes before the rest";
+        }
+    }
+}
+
+TEST(PictureSurround, AWalkThatTurnsHasNoHole) {
+    for (const std::uint32_t layers : {2U, 64U}) {
+        PictureWalk walk(test::forest_model(), {.layers = layers, .all_round = true});
+        Pose pose = in_the_forest(walk.engine());
+        std::uint32_t pictures = 0;
+        for (int i = 0; i < 40; ++i) {
+            pose.position.x += 1.4 / 30;
+            const Pose now = turned(pose, 0.05 * i);
+            pictures += walk.frame(now, period_us).pictures;
+            EXPECT_TRUE(holes(walk.engine(), now).empty()) << i;
+        }
+        EXPECT_GT(pictures, 40U);
+    }
+}
+
+}  // namespace
+}  // namespace surefoot
