@@ -1,56 +1,19 @@
 // Slots of pictures: no two overlap, bytes are exact, and nothing is left behind.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
-#include "render/cache/slots.hpp"
 #include "rt/base/random.hpp"
+#include "tests/cache/slot_board.hpp"
 
 namespace surefoot::cache {
 namespace {
 
-/// Where each texel square of 64 goes, kept by another way than Slots does.
-class Board {
-public:
-    explicit Board(std::uint32_t layers) : cells_(layers * 16, false) {}
-    /// False: a cell is not as it should be.
-    bool set(const Slot& slot, bool taken) {
-        bool sound = slot.column % slot.texels == 0 && slot.row % slot.texels == 0;
-        for (std::uint32_t y = slot.row / 64U; y < (slot.row + slot.texels) / 64U; ++y)
-            for (std::uint32_t x = slot.column / 64U; x < (slot.column + slot.texels) / 64U; ++x) {
-                const std::size_t cell = slot.layer * 16U + y * 4U + x;
-                if (x >= 4 || y >= 4 || cell >= cells_.size() || cells_[cell] == taken) return false;
-                cells_[cell] = taken;
-            }
-        return sound;
-    }
-    [[nodiscard]] std::uint64_t bytes() const {
-        return static_cast<std::uint64_t>(std::count(cells_.begin(), cells_.end(), true)) * 64 * 64 * 4;
-    }
-    /// Whether an aligned place of this side is free.
-    [[nodiscard]] bool has_room(std::uint32_t texels) const {
-        const std::size_t side = texels / 64;
-        for (std::size_t layer = 0; layer < cells_.size() / 16; ++layer)
-            for (std::size_t y = 0; y < 4; y += side)
-                for (std::size_t x = 0; x < 4; x += side) {
-                    bool free = true;
-                    for (std::size_t i = 0; i < side * side; ++i)
-                        free = free && !cells_[layer * 16 + (y + i / side) * 4 + x + i % side];
-                    if (free) return true;
-                }
-        return false;
-    }
-
-private:
-    std::vector<bool> cells_;
-};
-
 void take_and_give(std::uint32_t layers, int operations, std::uint64_t seed) {
     Random random(seed);
     Slots slots(layers);
-    Board board(layers);
+    SlotBoard board(layers);
     std::vector<Slot> held;
     for (int i = 0; i < operations; ++i) {
         const bool full_phase = i / 1000 % 2 == 0;  // fills up, then empties
