@@ -1,7 +1,7 @@
-// Bench: the image cache along a path at 1.4 m/s, by its picture and by CPU time. Two engines draw each frame in turns: with
+// Bench: the image cache along a path at one speed, by its picture and by CPU time. Two engines draw each frame in turns: with
 // pictures and without. Every tenth picture is compared with full detail. With a folder: writes the worst one, full detail and
-// the difference. bench_picture_cache MODEL.walk PATH.csv [FRAMES 300] [SELECTOR flat] [FOLDER] [STATE_DIR] [LIFT_M 0] -> one
-// JSON object.
+// the difference. bench_picture_cache MODEL.walk PATH.csv [FRAMES 300] [SELECTOR flat] [FOLDER] [STATE_DIR] [LIFT_M 0]
+// [SPEED_M_S 1.4] [view|surround] -> one JSON object.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,8 +33,8 @@ double process_cpu_us() {
 }
 
 /// The same way at one speed; where it turns faster than an eye does, it takes its time.
-Path at_walking_pace(const Path& path) {
-    constexpr double speed_m_s = 1.4, max_turn_rad_s = 1;
+Path at_speed(const Path& path, double speed_m_s) {
+    constexpr double max_turn_rad_s = 1;
     Path paced;
     double time_s = 0;
     for (const PathSample& sample : path.samples) {
@@ -77,10 +77,11 @@ struct Walker {
     }
 };
 
-Result<Walker> open_walker(const bench::Scene& scene, const std::string& selector, bool cache) {
+Result<Walker> open_walker(const bench::Scene& scene, const std::string& selector, bool cache, bool all_round) {
     EngineOptions options;
     options.device.kind = gl::BackendKind::egl;
     options.device.picture_layers = cache ? layers : 0;
+    options.pictures_all_round = all_round;
     options.selector = selector;
     auto engine = Engine::open(scene.model, scene.costs, options);
     if (!engine) return engine.error();
@@ -98,13 +99,19 @@ int main(int argc, char** argv) {
     if (!scene) return fail(scene.error());
     const int frames = std::atoi(argument(3, "300").c_str());
     const std::string selector = argument(4, "flat"), folder = argument(5, "");
-    auto with = open_walker(*scene, selector, true), without = open_walker(*scene, selector, false);
+    const double speed_m_s = std::atof(argument(8, "1.4").c_str());
+    const std::string keeps = argument(9, "view");
+    if (!(speed_m_s > 0) || (keeps != "view" && keeps != "surround"))
+        return fmt::print(stderr, "bench_picture_cache: the speed is no number above 0, or neither view nor surround is kept\n"),
+               2;
+    auto with = open_walker(*scene, selector, true, keeps == "surround");
+    auto without = open_walker(*scene, selector, false, false);
     if (!with || !without) return fail(with ? without.error() : with.error());
     gl::Device& device = with->engine->device();
     const model::Viewport viewport = with->engine->options().device.viewport;
     double worst_db = 1e9, sum_db = 0, other_db = 1e9;
     int compared = 0, counted = 0;
-    const Path paced = at_walking_pace(scene->path.path);
+    const Path paced = at_speed(scene->path.path, speed_m_s);
     const auto pose_of = [&](int i) { return sample_path(paced, i * period_s); };
     for (int i = 0; i < frames; ++i) {
         const Pose before = pose_of(std::max(0, i - 1)), pose = pose_of(i), next = pose_of(i + 1);
@@ -136,12 +143,13 @@ int main(int argc, char** argv) {
     }
     const double n = std::max(1, counted);
     fmt::print(
-        "{{\"bench\": \"picture_cache\", \"frames\": {}, \"selector\": \"{}\", \"cpu_ms\": {:.2f}, \"cpu_ms_without\": {:.2f}, "
+        "{{\"bench\": \"picture_cache\", \"frames\": {}, \"selector\": \"{}\", \"speed_m_s\": {}, \"keeps\": \"{}\", \"cpu_ms\": "
+        "{:.2f}, \"cpu_ms_without\": {:.2f}, "
         "\"predicted_ms\": {:.2f}, \"predicted_ms_without\": {:.2f}, \"pictures\": {:.1f}, \"made\": {:.2f}, \"captures_us\": "
         "{:.0f}, "
         "\"triangles\": {:.0f}, \"triangles_without\": {:.0f}, \"uncovered\": {:.1f}, \"worst_db\": {:.1f}, \"mean_db\": {:.1f}, "
         "\"worst_db_without\": {:.1f}}}\n",
-        counted, selector, 1e-3 * with->cpu_us / n, 1e-3 * without->cpu_us / n, 1e-3 * with->predicted_us / n,
+        counted, selector, speed_m_s, keeps, 1e-3 * with->cpu_us / n, 1e-3 * without->cpu_us / n, 1e-3 * with->predicted_us / n,
         1e-3 * without->predicted_us / n, with->pictures / n, with->made / n, with->captures_us / n, with->triangles / n,
         without->triangles / n, with->uncovered / n, worst_db, sum_db / std::max(1, compared), other_db);
     return 0;
