@@ -108,7 +108,7 @@ refuse "nosuch.*forest, room, town" scene nosuch -o x.glb
 for value in 0 -1 1e9 nan; do refuse "--scale.*$value.* 0.01 to 200" scene forest --scale $value -o x.glb; done
 refuse '--rate.*nan' bake f.glb --rate nan -o x.walk
 refuse '--backend foo.*egl' walk f.walk --clock virtual --backend foo
-refuse '--cache most.*off, view, surround' walk --cache=most f.walk
+refuse '--cache nowhere.*off, view, surround' walk --cache=nowhere f.walk
 for kept in --cache --cache=true --cache=surround --cache=off; do json walk $kept f.walk $virtual --frames 3; done
 for command in "walk f.walk" "accuracy f.walk" calibrate; do refuse "--backend vulkan.*kms" $command --backend vulkan; done
 refuse "mode '1920'.*WIDTHxHEIGHT@HZ" walk f.walk --backend kms --mode 1920

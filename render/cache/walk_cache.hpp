@@ -90,8 +90,8 @@ public:
     const model::CoverBits& cover(const ViewPixels& pixels, double radius_m);
 
     /// What the last cut's items cost and show, node by node, and what full detail would show: so much could be saved, and shown
-    /// more. `covered`: of the set of that cut; what lies there is not drawn, so its last cost stays. With a surround so does the
-    /// cost of what is not wholly in the view of the last plan(); where none is known, the cost table's price stands for it.
+    /// more. `covered`: of the set of that cut; what lies there is not drawn, so its last cost stays. With a surround, so does
+    /// that of what is not wholly in the view of the last plan(). Where no cost is known, the cost table's price stands for it.
     void begin_costs(const model::CoverBits& covered);
     void add_cost(model::Index node, float us, float value, float full_value);
     void end_costs();

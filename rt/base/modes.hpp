@@ -1,4 +1,4 @@
-// Modes of a walk that several rooms know: the policy for late frames, the clock, the texture filter, the image cache; and what
+// Modes of a walk that several rooms know: the policy for late frames, the clock, the texture filter, the image cache. And what
 // became of a guarantee. Enums, with their names in settings and reports.
 #pragma once
 

@@ -31,7 +31,7 @@ cache_walk() { # LABEL KEEPS
 }
 
 cache_group() {
-  fit town
+  [[ -n "${SUREFOOT_CACHE_PAIRS:-}" ]] || fit town
   running_path || return 0
   for keeps in view surround; do cache_walk "$keeps" "$keeps"; done
 }

@@ -65,7 +65,7 @@ Pose pose_at(const Way& way, double begin_m, double time_s, double speed_m_s) {
     const double here = begin_m + run_m(time_s, speed_m_s);
     Pose pose;
     pose.position = way.at(here);
-    const dvec3 ahead = way.at(here + 0.5) - way.at(here - 0.5);
+    const dvec3 ahead = way.at(here + 0.5) - way.at(here);
     const double heading = std::hypot(ahead.x, ahead.z) > 1e-6 ? std::atan2(-ahead.x, -ahead.z) : 0.0;
     pose.orientation = glm::angleAxis(heading + turned_rad(time_s), dvec3(0, 1, 0));
     return pose;

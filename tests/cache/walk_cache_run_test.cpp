@@ -73,7 +73,7 @@ public:
         }
         if (!shows_all_of(sets_[random_.below(3)], pose)) return false;
         cache_.drop_pending();
-        tell_costs(seen);
+        add_costs(seen);
         ++frames_;
         return in_step();
     }
@@ -114,7 +114,7 @@ private:
         eye_ += step_m_;
     }
     /// What is in view costs something, but for what the set left out.
-    void tell_costs(const model::Frustum& seen) {
+    void add_costs(const model::Frustum& seen) {
         const model::CoverBits& set = sets_[frames_ % sets_.size()];
         cache_.begin_costs(set);
         static const model::Model model = cube_of_leaves();
