@@ -119,7 +119,7 @@ private:
         cache_.begin_costs(set);
         static const model::Model model = cube_of_leaves();
         for (model::Index n = 1; n < model.nodes.size(); ++n)
-            if (!cache_.boxes().covered(n, set) && model::visible(seen, model.nodes[n].box)) cache_.add_cost(n, 60, 1);
+            if (!cache_.boxes().covered(n, set) && model::visible(seen, model.nodes[n].box)) cache_.add_cost(n, 60, 1, 1);
         cache_.end_costs();
     }
     /// Slots overlap nowhere, and bytes are those of what is held.
