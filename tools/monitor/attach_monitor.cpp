@@ -21,7 +21,7 @@ MonitoredWalk monitored(const walk::WalkRequest& request, const walk::WalkStart&
     w.renderer = start.renderer;
     w.clock = rt::name_of(request.clock);
     w.rate_hz = request.rate_hz;
-    w.cache = request.cache;
+    w.cache = request.cache != rt::ImageCache::off;
     w.setup.period_ns = start.period_ns;
     w.setup.late = request.late;
     w.setup.rasterisers = static_cast<std::uint32_t>(std::max(start.rasterisers, 1));
