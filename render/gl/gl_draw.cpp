@@ -39,8 +39,8 @@ std::array<std::uint8_t, 4> darkened(std::array<std::uint8_t, 4> colour, const v
 }  // namespace
 
 GeometryBuffers GlDevice::geometry() const {
-    return {resources_.vertices,   resources_.indices,  frame_.instance_buffer,
-            frame_.command_buffer, resources_.sun_seen, resources_.lamp_light};
+    return {resources_.vertices, resources_.indices,    frame_.instance_buffer, frame_.command_buffer,
+            resources_.sun_seen, resources_.lamp_light, resources_.sun_vertices};
 }
 
 void GlDevice::begin_frame(const Pose& pose, float resolution) {

@@ -15,6 +15,7 @@ constexpr GLuint vertex_binding = 0;
 constexpr GLuint instance_binding = 1;
 constexpr GLuint sun_seen_binding = 2;
 constexpr GLuint lamp_binding = 3;
+constexpr std::size_t sun_pair_bytes = 2;
 
 /// An attribute that a program may read: GLSL name (without array index), place and form in its buffer.
 struct Attribute {
@@ -79,7 +80,7 @@ void make_vertex_array(const Api& gl, Program& program, const GeometryBuffers& b
     gl.BindVertexBuffer(vertex_binding, buffers.vertices, 0, sizeof(model::Vertex));
     gl.BindVertexBuffer(instance_binding, buffers.instances, 0, sizeof(Instance));
     gl.VertexBindingDivisor(instance_binding, 1);
-    if (buffers.sun_seen != 0) gl.BindVertexBuffer(sun_seen_binding, buffers.sun_seen, 0, sizeof(model::SunSeen));
+    if (buffers.sun_seen != 0) gl.BindVertexBuffer(sun_seen_binding, buffers.sun_seen, 0, GLsizei{sun_pair_bytes});
     if (buffers.lamp_light != 0) gl.BindVertexBuffer(lamp_binding, buffers.lamp_light, 0, sizeof(model::LampLight));
     for (const Attribute& a : attributes) {
         const GLint first = gl.GetAttribLocation(program.id, a.name);
@@ -166,7 +167,8 @@ void write_uniforms(const Api& gl, const Program& program, const PictureMoment& 
 void set_sun_moment(const Api& gl, Program& program, const GeometryBuffers& buffers, std::uint32_t moment) {
     moment = std::min(moment, model::sun_moments - 1);  // and the one after it
     if (program.sun_moment == moment || buffers.sun_seen == 0) return;
-    gl.BindVertexBuffer(sun_seen_binding, buffers.sun_seen, moment, sizeof(model::SunSeen));
+    const std::size_t first_byte = moment * sun_pair_bytes * buffers.sun_vertices;
+    gl.BindVertexBuffer(sun_seen_binding, buffers.sun_seen, static_cast<GLintptr>(first_byte), GLsizei{sun_pair_bytes});
     program.sun_moment = moment;
 }
 

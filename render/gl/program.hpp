@@ -47,6 +47,7 @@ struct Program {
 struct GeometryBuffers {
     GLuint vertices = 0, indices = 0, instances = 0, commands = 0;
     GLuint sun_seen = 0, lamp_light = 0;  ///< 0: the model has none
+    std::size_t sun_vertices = 0;         ///< sun_seen has so many pairs for each moment: of it and of the next one
 };
 
 /// Compiles and links; the error carries the compiler's message.

@@ -15,6 +15,16 @@ namespace {
 
 GLint mip_filter(bool trilinear) { return trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST; }
 
+/// By moment, and in it by vertex: its share and that of the next moment. A frame reads two bytes a vertex. Side by side with the
+/// shares of all other moments, they would take a line of the cache for every four vertices.
+std::vector<std::uint8_t> pairs_by_moment(std::span<const model::SunSeen> seen) {
+    std::vector<std::uint8_t> pairs;
+    pairs.reserve(2 * model::sun_moments * seen.size());
+    for (std::uint32_t moment = 0; moment < model::sun_moments; ++moment)
+        for (const model::SunSeen& vertex : seen) pairs.insert(pairs.end(), {vertex.share[moment], vertex.share[moment + 1]});
+    return pairs;
+}
+
 /// Uploads an array of textures of equal size, levels and wrap.
 Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw::TextureArray& array, bool trilinear) {
     GLint largest = 0;
@@ -113,9 +123,11 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
     gl.BindVertexArray(0);  // the index buffer's binding belongs to the vertex array
     resources.vertices = make_static(gl, GL_ARRAY_BUFFER, model.vertices.data(), model.vertices.size() * sizeof(model::Vertex));
     resources.indices = make_static(gl, GL_ARRAY_BUFFER, model.indices.data(), model.indices.size() * sizeof(std::uint32_t));
-    if (!model.sun_seen.empty())
-        resources.sun_seen =
-            make_static(gl, GL_ARRAY_BUFFER, model.sun_seen.data(), model.sun_seen.size() * sizeof(model::SunSeen));
+    resources.sun_vertices = model.sun_seen.size();
+    if (!model.sun_seen.empty()) {
+        const std::vector<std::uint8_t> pairs = pairs_by_moment(model.sun_seen);
+        resources.sun_seen = make_static(gl, GL_ARRAY_BUFFER, pairs.data(), pairs.size());
+    }
     if (!model.lamp_light.empty())
         resources.lamp_light =
             make_static(gl, GL_ARRAY_BUFFER, model.lamp_light.data(), model.lamp_light.size() * sizeof(model::LampLight));
@@ -128,8 +140,8 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
     }
     const std::string smaller = "Scale the textures down: they do not fit the device";
     if (auto fine = check_errors(gl, "uploading textures", smaller); !fine) return fine.error();
-    const GeometryBuffers buffers{resources.vertices,   resources.indices,  frame.instance_buffer,
-                                  frame.command_buffer, resources.sun_seen, resources.lamp_light};
+    const GeometryBuffers buffers{resources.vertices, resources.indices,    frame.instance_buffer, frame.command_buffer,
+                                  resources.sun_seen, resources.lamp_light, resources.sun_vertices};
     for (const model::EffectMask mask : masks) {
         auto program = make_program(gl, mask, programs(mask), options.samples, buffers);
         if (!program) return program.error();

@@ -38,6 +38,7 @@ Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items);
 struct Resources {
     GLuint vertices = 0, indices = 0;
     GLuint sun_seen = 0, lamp_light = 0;  ///< 0: the model has none
+    std::size_t sun_vertices = 0;         ///< that sun_seen has a pair of, for each moment
     std::vector<GLuint> textures;         ///< in the order of TextureLayout::arrays
     std::vector<Program> programs;        ///< in the order of DrawTables::masks, then their variants without switched effects
 };
