@@ -1,6 +1,6 @@
 // Effect: captured pictures of boxes in the light of the moment. What they are captured from looks many ways, so no normal
 // serves: bake adds up how much of the sun at each moment, of sky, ground, rooms and lamps falls on it. Lamps differ by corner,
-// so colours are interpolated: it is priced as the sun is.
+// so colours are interpolated.
 #include <algorithm>
 
 #include "render/effects/modules.hpp"
@@ -75,6 +75,8 @@ constexpr EffectModule lit_picture{
         "    lit *= 2.0 * on_picture + picture_lamps * lamps_before * lamps_before;\n",
     .light_inputs = picture_inputs,
     .order = 6,
+    .priced_on = model::effect_texture,
+    .usual_price = {model::effect_lit_picture, 2.5F, 0.9F, 0.08F},
     .light = light_picture,
     .not_everywhere = "light would change materials without it",
 };

@@ -62,7 +62,7 @@ ItemCost CostModel::item(float triangles, float pixels, const CostGrid& grid) co
 
 const CostGrid& CostModel::grid_for(EffectMask effects) const {
     // What light all of them share, normals above all, is the sun's. What each adds is its price.
-    constexpr EffectMask baked = effect_openness | effect_shadow | effect_lamps | effect_lit_picture;
+    constexpr EffectMask baked = effect_openness | effect_shadow | effect_lamps;
     if ((effects & baked) != 0) effects = (effects & ~baked) | effect_sun;
     const CostGrid* best = &grids.front();
     int best_rank = -1000;

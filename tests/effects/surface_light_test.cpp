@@ -3,13 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "rt/base/random.hpp"
 #include "tests/effects/reference_shading.hpp"
 
 namespace surefoot::effects {
 namespace {
 
-constexpr model::EffectMask of_light = model::effect_sun | model::effect_openness | model::effect_shadow | model::effect_lamps;
+constexpr model::EffectMask of_light =
+    model::effect_sun | model::effect_openness | model::effect_shadow | model::effect_lamps | model::effect_lit_picture;
 
 reference::Light reference_light(const model::Daylight& light) {
     reference::Light out;
@@ -22,6 +25,25 @@ reference::Light reference_light(const model::Daylight& light) {
     out.lamps = static_cast<double>(light.lamp_strength);
     out.rooms = static_cast<double>(light.room_light);
     return out;
+}
+
+/// Any light on a picture.
+PictureLight any_picture(Random& random, const model::Model& model) {
+    PictureLight picture;
+    const auto byte = [&] { return static_cast<std::uint8_t>(random.below(256)); };
+    picture.from = {byte(), byte(), byte(), 0};
+    picture.sun = model.sun_seen[0];
+    for (std::uint8_t& root : picture.lamps) root = byte();
+    return picture;
+}
+
+/// The same, as a vertex of the reference has it.
+reference::Surface surface_of(const PictureLight& picture, double in_sun) {
+    reference::Surface surface;
+    surface.hidden = dvec4(picture.from[0], picture.from[1], picture.from[2], 0) / 255.0;
+    surface.picture_sun = in_sun;
+    surface.picture_lamps = dvec3(picture.lamps[0], picture.lamps[1], picture.lamps[2]) / 255.0;
+    return surface;
 }
 
 TEST(SurfaceLight, EqualsTheReferenceByEveryMaskAtEveryHour) {
@@ -53,9 +75,17 @@ TEST(SurfaceLight, EqualsTheReferenceByEveryMaskAtEveryHour) {
         point.sun_seen = model.sun_seen[0];
         const std::uint8_t* const lamps = model.lamp_light[0].before;
         point.by_lamps = vec3(lamps[0], lamps[1], lamps[2]) / 255.0F;
+        const bool is_picture = (material.effects & model::effect_lit_picture) != 0;
+        if (is_picture) {
+            point.picture = any_picture(random, model);
+            side.picture = reference::light_on_picture(view.light, surface_of(point.picture, reference::sun_at_vertex(view, 0)));
+        }
         const dvec3 expected = reference::light_at_vertex(view, material, side);
         const vec3 found = light_of(point, material.effects, light);
-        for (int c = 0; c < 3; ++c) ASSERT_NEAR(found[c], expected[c], 2e-5) << effects_text(material.effects) << ", " << i;
+        for (int c = 0; c < 3; ++c) {
+            const double scale = is_picture ? std::max(1.0, expected[c]) : 1.0;  // its light multiplies that of others
+            ASSERT_NEAR(found[c], expected[c], 2e-5 * scale) << effects_text(material.effects) << ", " << i;
+        }
     }
 }
 
