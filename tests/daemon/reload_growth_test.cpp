@@ -106,8 +106,10 @@ TEST_P(Growth, OfManyReloadsIsNone) {
     daemon.rate_hz = 100;  // a walk rehearses 24 periods: short ones begin sooner
     // In turns another size: nothing of the last walk fits the next.
     const auto size = [](int n) { return n % 2 == 0 ? "160x120" : "192x144"; };
-    const auto config = [&](int n) {
-        daemon.write_config(n % 2 == 0 ? "width = 160\nheight = 120\n" : "width = 192\nheight = 144\n", backend);
+    const auto config = [&](int n) {  // the budget: what a fuller picture would cost is no part of a reload
+        daemon.write_config(
+            std::string("budget_ms = 2\n") + (n % 2 == 0 ? "width = 160\nheight = 120\n" : "width = 192\nheight = 144\n"),
+            backend);
     };
     config(0);
     daemon.start();
