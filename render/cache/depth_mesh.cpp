@@ -145,9 +145,9 @@ void DepthMesher::judge_edge(Point middle, int half, bool horizontal) {
         const float bulge = std::abs(value(middle, towards(in_x, in_y)) - flat);
         error = std::max(error, bulge + std::max(errors[0], errors[1]));
     }
-    // Where a side is cut in a part of its length, its ends would part the rest too.
+    // Along a cut, sides are as short as walls are: else there would be cracks between them.
     const bool both = covers_[2 * at(middle)] == Cover::all && covers_[2 * at(middle) + 1] == Cover::all;
-    if (const int cuts = both ? cuts_along(a, b) : 0; cuts > 0 && cuts < 2 * half) error = must_split;
+    if (both && cuts_along(a, b) > 0) error = must_split;
     errors_[at(middle)] = error;
 }
 

@@ -48,6 +48,7 @@ namespace surefoot::gl {
     X(DepthMask, PFNGLDEPTHMASKPROC)                                           \
     X(Disable, PFNGLDISABLEPROC)                                               \
     X(DrawArrays, PFNGLDRAWARRAYSPROC)                                         \
+    X(DrawElements, PFNGLDRAWELEMENTSPROC)                                     \
     X(Enable, PFNGLENABLEPROC)                                                 \
     X(EnableVertexAttribArray, PFNGLENABLEVERTEXATTRIBARRAYPROC)               \
     X(EndQuery, PFNGLENDQUERYPROC)                                             \

@@ -2,6 +2,7 @@
 #include "render/gl/cache_pictures.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <utility>
 
@@ -226,7 +227,7 @@ bool GlDevice::has_capture_program(const draw::DrawPart& part) const {
 bool GlDevice::capture_picture(const CachePicture& picture, std::span<const DrawItem> items,
                                std::span<const CachePicture> back_to_front) {
     if (lost_ || capture_count_ == captures_.size() || !lies_within(picture.place, picture_layers())) return false;
-    captures_[capture_count_++] = {picture, items, back_to_front};
+    captures_[capture_count_++] = {picture, items, back_to_front, {}};
     return true;
 }
 
@@ -299,6 +300,7 @@ void GlDevice::draw_capture(const WaitingCapture& capture) {
     begin_capture(capture.picture,
                   capture.pictures.empty() ? pictures_.framebuffers[place.layer] : pictures_.scratch_framebuffer);
     draw_parts(capture.items, Parts::opaque);
+    if (!capture.depths.empty()) read_depths(place, capture.depths);
     if (!capture.pictures.empty()) draw_pictures_into(place, capture.pictures);
 }
 
@@ -362,8 +364,10 @@ void GlDevice::warm_up_captures(std::span<const Pending> kinds) {
             if (!is_blended(part) && has_capture_program(part)) warm_up_part(pending);
         }
         const CachePicture of_pictures = picture_before(picture_layer_px), inside = picture_before(texels);
-        draw_capture({of_pictures, {}, {&inside, 1}});
+        draw_capture({of_pictures, {}, {&inside, 1}, {}});
     }
+    std::array<float, 1> depth{};
+    if (draws_meshes()) read_depths({0, 0, 0, 1}, depth);
     end_captures();
 }
 
@@ -371,6 +375,7 @@ void GlDevice::warm_up_captures(std::span<const Pending> kinds) {
 void GlDevice::warm_up_pictures() {
     if (pictures_.framebuffers.empty()) return;
     const CachePicture picture = picture_before(picture_layer_px);
+    warm_up_meshes(picture);
     draw_pictures({&picture, 1});
 }
 

@@ -75,6 +75,20 @@ struct CachePicture {
     double grown_m = 0;  ///< the box is so much larger at each face; what is before the smaller one stays before the picture
 };
 
+/// A corner of a mesh that shows a picture.
+struct MeshCorner {
+    vec3 place{0};  ///< relative to the eye of the picture
+    vec2 at{0};     ///< in texels of its square
+};
+
+/// A picture on a mesh of its own depths. Texels that it shows must be covered whole: they are drawn opaque.
+struct PictureMesh {
+    PicturePlace place;
+    dvec3 eye{0.0};  ///< of the picture, in the world
+    std::span<const MeshCorner> corners;
+    std::span<const std::uint16_t> indices;  ///< three a triangle, both sides are seen
+};
+
 /// What programs may read of the moment that a picture shows.
 struct PictureMoment {
     model::Daylight light;  ///< `background` is the colour itself
@@ -171,6 +185,8 @@ struct DeviceOptions {
     bool background = true;
     bool second_filter = false;        ///< prepares set_filter(), where `filter` is automatic and the driver is software
     std::uint32_t picture_layers = 0;  ///< of the image cache, 256 KiB each; 0: load() makes nothing of it
+    /// Triangles of draw_picture_meshes() that a frame draws without waiting; 0: load() makes nothing for meshes.
+    std::uint32_t mesh_triangles = 0;
 };
 
 /// Counts and times of one drawn frame.
@@ -178,6 +194,7 @@ struct FrameStats {
     std::uint32_t items = 0, draws = 0, batches = 0, state_changes = 0;
     std::uint64_t triangles = 0;
     std::uint32_t pictures = 0, captures = 0;  ///< of the image cache: drawn, and made anew; what a capture draws counts nowhere
+    std::uint32_t meshes = 0;                  ///< of the image cache
     float resolution = 1;                      ///< the step that is drawn, of model::resolution_steps
     std::uint32_t samples = 1;                 ///< Device::samples()
     rt::TextureFilter filter = rt::TextureFilter::bilinear;  ///< that textures are read by
@@ -277,6 +294,18 @@ public:
     bool capture_picture(const CachePicture& picture, std::span<const DrawItem> items) REQUIRES(draws) {
         return capture_picture(picture, items, {});
     }
+    /// The same, and its depths are read into `depths`, by rows from the lowest: 0 where nothing is, else
+    /// nearest_depth_m() of the picture over the texel's own depth. Waits for the capture. What pictures show has none.
+    virtual bool capture_depths(const CachePicture& picture, std::span<const DrawItem> items, std::span<float> depths)
+        REQUIRES(draws) {
+        static_cast<void>(picture), static_cast<void>(items), static_cast<void>(depths);
+        return false;
+    }
+    /// Whether draw_picture_meshes() draws.
+    [[nodiscard]] virtual bool draws_meshes() const { return false; }
+    /// Draws pictures on meshes, opaque, as triangles are: with their own depth, which they write. Before draw_pictures(), in the
+    /// current slice. The nearest first is the fastest. Meshes of over mesh_triangles, and those outside of layers, are left out.
+    virtual void draw_picture_meshes(std::span<const PictureMesh> meshes) REQUIRES(draws) { static_cast<void>(meshes); }
     /// Draws pictures into the frame in this order: back to front. After all draw(), and before end_items(), in the current
     /// slice. Pictures that cannot be seen from the eye of the frame are left out: its box holds it, or their plane is behind it.
     virtual void draw_pictures(std::span<const CachePicture> back_to_front) REQUIRES(draws) { static_cast<void>(back_to_front); }

@@ -140,6 +140,7 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     if (auto shadow = load_shadow(model, programs); !shadow) return shadow.error();
     if (auto behind = load_background(model, programs); !behind) return behind.error();
     load_pictures(model, programs);
+    load_meshes();
     set_filter_ = filter();
     detail_step_ = 0;
     light_ = model::daylight_of_model(model.sun_direction, model.light);

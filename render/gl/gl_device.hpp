@@ -12,6 +12,7 @@
 #include "render/gl/cache_pictures.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/enlarge_pixels.hpp"
+#include "render/gl/picture_meshes.hpp"
 #include "render/gl/resources.hpp"
 #include "render/gl/rest_targets.hpp"
 #include "render/gl/sample_targets.hpp"
@@ -51,6 +52,10 @@ public:
     bool capture_picture(const CachePicture& picture, std::span<const DrawItem> items,
                          std::span<const CachePicture> back_to_front) override REQUIRES(draws);
     void draw_pictures(std::span<const CachePicture> back_to_front) override REQUIRES(draws);
+    bool capture_depths(const CachePicture& picture, std::span<const DrawItem> items, std::span<float> depths) override
+        REQUIRES(draws);
+    [[nodiscard]] bool draws_meshes() const override { return meshes_.program != 0; }
+    void draw_picture_meshes(std::span<const PictureMesh> meshes) override REQUIRES(draws);
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
@@ -100,6 +105,7 @@ private:
         CachePicture picture;
         std::span<const DrawItem> items;
         std::span<const CachePicture> pictures;
+        std::span<float> depths = {};  ///< to be read; empty: none
     };
 
     GlDevice(std::unique_ptr<Context> context, const DeviceOptions& options);
@@ -146,6 +152,10 @@ private:
     void issue_pictures(std::size_t first) REQUIRES(draws);
     void warm_up_captures(std::span<const Pending> kinds) REQUIRES(draws);
     void warm_up_pictures() REQUIRES(draws);
+    void load_meshes() REQUIRES(draws);
+    void read_depths(const PicturePlace& place, std::span<float> to) REQUIRES(draws);
+    void issue_meshes(std::size_t first) REQUIRES(draws);
+    void warm_up_meshes(const CachePicture& picture) REQUIRES(draws);
     [[nodiscard]] bool has_capture_program(const draw::DrawPart& part) const REQUIRES(draws);
     [[nodiscard]] std::uint32_t program_of(const draw::DrawPart& part) const REQUIRES(draws) {
         if (drawing_ == Drawing::shadow) return caster_programs_[part.program];
@@ -211,10 +221,12 @@ private:
     bool shadow_shown_ GUARDED_BY(draws) = false;
     Drawing drawing_ GUARDED_BY(draws) = Drawing::picture;
     CachePictures pictures_;
+    PictureMeshes meshes_;
     std::string picture_reason_;
     std::vector<std::uint16_t> capture_programs_ GUARDED_BY(draws);  ///< beside those of `without_`; no_program: it draws none
     std::vector<WaitingCapture> captures_ GUARDED_BY(draws);
     std::size_t capture_count_ GUARDED_BY(draws) = 0, used_picture_vertices_ GUARDED_BY(draws) = 0;
+    std::size_t used_mesh_corners_ GUARDED_BY(draws) = 0, used_mesh_indices_ GUARDED_BY(draws) = 0;
     std::uint64_t frame_number_ GUARDED_BY(draws) = 0;
     FrameStats stats_ GUARDED_BY(draws);
     std::vector<Pending> pending_ GUARDED_BY(draws), blended_ GUARDED_BY(draws);

@@ -66,7 +66,7 @@ void GlDevice::start_picture(const Pose& pose) {
     slices_ = slices_done_ = 0;
     blended_count_ = 0;
     used_instances_ = used_commands_ = 0;
-    used_picture_vertices_ = 0;
+    used_picture_vertices_ = used_mesh_corners_ = used_mesh_indices_ = 0;
     state_known_ = false;
     shown_ = {light_, time_s_, pose.position, static_cast<float>(model::pixel_angle(pose, options_.viewport))};
     shown_.light.background *= vec3(options_.sky[0], options_.sky[1], options_.sky[2]);

@@ -78,7 +78,7 @@ bool lies_within(const PicturePlace& place, std::uint32_t layers) {
            place.row + std::uint32_t{place.texels} <= picture_layer_px;
 }
 
-mat4 capture_projection(const CachePicture& picture) {
+double nearest_depth_m(const CachePicture& picture) {
     double near = std::numeric_limits<double>::infinity();
     for (unsigned i = 0; i < 8; ++i) {
         const dvec3 corner((i & 1U) != 0 ? picture.box.max.x : picture.box.min.x,
@@ -87,7 +87,11 @@ mat4 capture_projection(const CachePicture& picture) {
         near = std::min(near, glm::dot(corner - picture.eye, picture.forward));
     }
     constexpr double before = 0.999;  // six planes cut the box: depth must not
-    near = std::max(before * near, min_ahead_m);
+    return std::max(before * near, min_ahead_m);
+}
+
+mat4 capture_projection(const CachePicture& picture) {
+    const double near = nearest_depth_m(picture);
     const dvec2 middle = (2.0 * picture.low_m + picture.side_m) / picture.side_m;
     const double scale = 2 * picture.plane_m / picture.side_m;
     const dvec3 x = scale * picture.right - middle.x * picture.forward, y = scale * picture.up - middle.y * picture.forward;

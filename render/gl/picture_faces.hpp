@@ -17,6 +17,9 @@ bool lies_within(const PicturePlace& place, std::uint32_t layers);
 /// before the box.
 mat4 capture_projection(const CachePicture& picture);
 
+/// The nearest depth of that projection, along the picture's forward: a depth that it gives, over this, is 1 / depth, 1/m.
+double nearest_depth_m(const CachePicture& picture);
+
 /// A corner of what shows a picture. As a driver reads it.
 struct PictureVertex {
     std::array<float, 4> place;  ///< relative to the eye of the frame, homogeneous

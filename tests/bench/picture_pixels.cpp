@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/cache/depth_mesh.hpp"
 #include "render/effects/effects.hpp"
 #include "tests/gl/small_models.hpp"
 
@@ -109,7 +110,8 @@ public:
     }
     /// us of a capture beyond a frame without any. In turn in `layers_in_use` layers: a change of layer ends a scene of the
     /// driver.
-    double capture_us(gl::CachePicture picture, std::span<const gl::DrawItem> items, unsigned layers_in_use) {
+    double capture_us(gl::CachePicture picture, std::span<const gl::DrawItem> items, unsigned layers_in_use,
+                      std::span<float> depths = {}) {
         constexpr unsigned count = 16;
         double least = 1e300, none = 1e300;
         for (int i = 0; i < rounds_; ++i) {
@@ -117,7 +119,7 @@ public:
             device_.draws.plays();
             for (unsigned c = 0; c < count; ++c) {
                 picture.place.layer = static_cast<std::uint16_t>(c % layers_in_use);
-                device_.capture_picture(picture, items);
+                depths.empty() ? device_.capture_picture(picture, items) : device_.capture_depths(picture, items, depths);
             }
             least = std::min(least, frame([] {}));
         }
@@ -129,12 +131,67 @@ private:
     int rounds_;
 };
 
+/// Two triangles that fill the view of Pose{} at each of some depths, or a grid of small ones.
+struct BenchMesh {
+    std::vector<gl::MeshCorner> corners;
+    std::vector<std::uint16_t> indices;
+    void add(const dvec2& low, double side_m, double depth_m, double texels) {
+        const auto first = static_cast<std::uint16_t>(corners.size());
+        for (const auto& [u, v] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}})
+            corners.push_back({vec3(dvec3(low + dvec2(u, v) * side_m, -depth_m)), vec2(dvec2(u, v) * texels)});
+        for (const int i : {0, 1, 2, 2, 1, 3}) indices.push_back(static_cast<std::uint16_t>(first + i));
+    }
+};
+
+/// CPU us of decimating a depth picture: the least of some rounds.
+double meshing_us(cache::DepthMesher& mesher, const std::vector<float>& depths, std::uint32_t texels, float tolerance,
+                  int rounds) {
+    double least = 1e300;
+    for (int i = 0; i < rounds; ++i) {
+        const double start = cpu_ns();
+        (void)mesher.make(depths, texels, {tolerance, 8192});
+        least = std::min(least, cpu_ns() - start);
+    }
+    return 1e-3 * least;
+}
+
+void print_meshes(Bench& bench, gl::Device& device, const Layers& made, int rounds) {
+    BenchMesh pixels, grid;
+    for (int i = 0; i < layers; ++i) pixels.add(dvec2(-30), 60, 20.0 - i, 256);
+    for (int i = 0; i < 5000; ++i) grid.add(dvec2(-10 + 0.2 * (i % 100), -5 + 0.2 * (i / 100)), 0.15, 15, 1);
+    const gl::CachePicture picture = full_picture(256);
+    const auto draw = [&](const BenchMesh& mesh, const char* what, double of) {
+        const gl::PictureMesh shown{picture.place, dvec3(0), mesh.corners, mesh.indices};
+        const double ns = bench.beyond_empty([&] {
+            device.draws.plays();
+            device.draw_picture_meshes({&shown, 1});
+        });
+        fmt::print("{:<28} {:6.2f} ns\n", what, ns / of);
+    };
+    draw(pixels, "a pixel of a mesh", layers * frame_pixels);
+    draw(grid, "a small triangle of a mesh", 10000);
+    std::vector<float> depths(std::size_t{256} * 256);
+    for (const std::uint16_t texels : {std::uint16_t{64}, std::uint16_t{128}, std::uint16_t{256}}) {
+        const gl::CachePicture captured = full_picture(texels);
+        const std::span<const gl::DrawItem> items = std::span(made.kinds[1]).last(1);
+        const double us = bench.capture_us(captured, items, 4), read_us = bench.capture_us(captured, items, 4, depths);
+        cache::DepthMesher mesher(256, 8192);
+        const std::size_t count = std::size_t{texels} * texels;
+        std::vector<float> flat(count, 0.5F), noise(count);
+        for (std::size_t i = 0; i < count; ++i)
+            noise[i] = i * 2654435761U % 1024 < 500 ? 0 : 0.5F + 1e-4F * static_cast<float>(i % 97);
+        fmt::print("capture of {} texels {:.1f} us, depths read {:.1f}; meshing: flat {:.1f} us, noise {:.1f}\n", texels, us,
+                   read_us, meshing_us(mesher, flat, texels, 0.01F, rounds), meshing_us(mesher, noise, texels, 0.001F, rounds));
+    }
+}
+
 int run(int rounds) {
     gl::prepare_process(0);
     const Layers made = make_layers();
     gl::DeviceOptions options;
     options.viewport = size;
     options.picture_layers = 4;
+    options.mesh_triangles = 10000;
     auto device = gl::open_device(options);
     if (!device.ok()) {
         fmt::print(stderr, "{}\n", device.error().text());
@@ -176,6 +233,7 @@ int run(int rounds) {
             }
         }
     }
+    print_meshes(bench, gl_device, made, rounds);
     const double in_frame = bench.beyond_empty([&] {
         gl_device.draws.plays();
         gl_device.draw({&made.mesh, 1});

@@ -149,6 +149,64 @@ TEST(StudyPictures, OfChairsUnderATableAreRightByBoxAndWrongByObject) {
     EXPECT_GT(by_object->wrong, 50U) << "plates and fruit behind the picture of the table";
 }
 
+TEST(StudyPictures, OnMeshesStandWithinAPixelAndAreChosenWhereTheyAreCheaper) {
+    CheckRequest request = narrow_view();
+    request.kind = PictureKind::mesh;
+    const auto scene = make_study("room", 600);
+    ASSERT_TRUE(scene);
+    request.frames = 8;
+    request.every = 4;
+    const auto room = check_pictures(*scene, request, {});
+    if (is_absent(room)) GTEST_SKIP() << room.error().text();
+    EXPECT_EQ(room->wrong, 0U);
+    EXPECT_GT(room->meshes, 5U);
+    request.fov_y_rad = 0.35;
+    request.frames = 0;
+    for (const dvec3& step : {dvec3(0.025, 0, 0), dvec3(0.0125, 0, -0.07)}) {
+        const auto meshed = check_pictures(posts(1, step), request, {});
+        ASSERT_TRUE(meshed);
+        EXPECT_EQ(meshed->frames, 12U);
+        EXPECT_EQ(meshed->meshes, 12U);
+        EXPECT_EQ(meshed->wrong, 0U);
+    }
+    request.kind = PictureKind::cheaper;
+    const auto of_posts = check_pictures(posts(1, {0.025, 0, 0}), request, {});
+    ASSERT_TRUE(of_posts);
+    EXPECT_EQ(of_posts->wrong, 0U);
+    EXPECT_EQ(of_posts->pictures, 12U);
+}
+
+TEST(StudyMeshes, TakeTheKindThatCostsLess) {
+    cache::Picture picture = *cache::picture_of({dvec3(-1, -1, -7), dvec3(1, 1, -5)}, dvec3(0));
+    gl::CachePicture held;
+    held.place.texels = 64;
+    held.plane_m = picture.plane_m;
+    held.side_m = picture.side_m;
+    held.low_m = picture.low_m;
+    held.box = {dvec3(-1, -1, -7), dvec3(1, 1, -5)};
+    StudyMeshes meshes(2, PictureKind::cheaper);
+    const auto fill = [&](cache::Index box, bool noise) {
+        const std::span<float> depths = meshes.depths_of(box, 64);
+        for (std::size_t i = 0; i < depths.size(); ++i)
+            depths[i] = noise         ? (i * 2654435761U % 7 < 3 ? 0.0F : 0.75F + 0.03F * static_cast<float>(i % 7))
+                        : i % 64 < 32 ? 0.8F
+                                      : 0;
+    };
+    const StudyMeshes::Seen seen{8192, 1};
+    fill(0, false);
+    fill(1, true);
+    EXPECT_TRUE(meshes.shows(0, held, picture, seen)) << "half of it is empty, and the rest a plane";
+    EXPECT_LE(meshes.mesh(0, held).indices.size(), 12U);
+    EXPECT_FALSE(meshes.shows(1, held, picture, seen)) << "foliage";
+    EXPECT_FALSE(meshes.shows(0, held, picture, {100, 1})) << "from another eye";
+    const MeshCounts counts = meshes.take_counts();
+    EXPECT_EQ(counts.made, 1U);
+    EXPECT_EQ(counts.too_dear, 1U);
+    meshes.drop(0);
+    EXPECT_FALSE(meshes.shows(0, held, picture, seen)) << "of pictures: it has no depths";
+    EXPECT_FALSE(StudyMeshes(1, PictureKind::quad).any());
+}
+
 TEST(StudyPictures, AreDrawnAndTimedWhereADeviceIs) {
     StudyRequest request;
     request.study = "room";

@@ -186,6 +186,7 @@ TEST(Allocation, pictures_of_the_image_cache_make_none_and_compile_nothing) {
         gl::DeviceOptions options;
         options.viewport = {64, 64};
         options.picture_layers = 2;
+        options.mesh_triangles = 64;
         options.samples = samples;
         options.second_filter = options.smaller = true;
         options.switches = {model::effect_sun, model::effect_blend};
@@ -206,20 +207,28 @@ TEST(Allocation, pictures_of_the_image_cache_make_none_and_compile_nothing) {
         }
         Pose pose;
         pose.position.z = 11;
+        std::vector<float> depths(std::size_t{256} * 256);
+        const std::array<gl::MeshCorner, 3> corners{
+            gl::MeshCorner{vec3(0, 0, -3), vec2(1)}, {vec3(1, 0, -3), vec2(9)}, {vec3(1), vec2(4)}};
+        const std::array<std::uint16_t, 3> indices{0, 1, 2};
+        const gl::PictureMesh mesh{pictures[0].place, pose.position, corners, indices};
         counted = 0;
         counting = true;
         for (unsigned i = 0; i < 8; ++i) {
             (*device)->set_filter(i < 4 ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear);
             (*device)->hide_effects((i & 1U) != 0 ? model::effect_sun | model::effect_blend : 0);
-            for (const gl::CachePicture& picture : pictures) (*device)->capture_picture(picture, scene.items);
+            (*device)->capture_picture(pictures[0], scene.items);
+            (*device)->capture_depths(pictures[1], scene.items, depths);
             (*device)->begin_frame(pose, (i & 2U) != 0 ? 0.625F : 1.0F);
             (*device)->draw(scene.items);
+            (*device)->draw_picture_meshes({&mesh, 1});
             (*device)->draw_pictures(pictures);
             (*device)->end_slice();
             (*device)->end_items();
             (*device)->finish_frame();
             counting = false;
             EXPECT_EQ((*device)->stats().captures, 2U);
+            EXPECT_EQ((*device)->stats().meshes, 1U);
             EXPECT_EQ((*device)->stats().pictures, 2U);
             counting = true;
         }

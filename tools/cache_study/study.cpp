@@ -40,6 +40,9 @@ FrameTimes times_of(StudyDevice& device, const cache::CachePlan& plan, const Dra
     times.cached = {planned.ms + drawn.times.ms, planned.cpu_ms + drawn.times.cpu_ms};
     times.pictures = drawn.pictures;
     times.leaves = drawn.leaves;
+    times.meshes = drawn.meshes;
+    times.mesh_triangles = drawn.mesh_triangles;
+    times.made = drawn.made;
     times.full = device.draw_full(pose);
     keep(&StudyView::full);
     return times;
@@ -85,6 +88,7 @@ std::unique_ptr<StudyDevice> device_for(const StudyScene& scene, const StudyRequ
     DrawingOptions options;
     options.backend = *request.backend;
     options.viewport = {request.width, request.height};
+    options.kind = request.kind;
     auto device = StudyDevice::open(scene, options);
     if (!device) {
         study.no_times = "Nothing is drawn: " + device.error().text();
@@ -112,8 +116,10 @@ Result<void> check_all(const StudyScene& scene, const StudyRequest& request, con
     check.width = request.width;
     check.height = request.height;
     check.backend = *request.backend;
+    check.kind = request.kind;
     check.every = std::max(1U, static_cast<std::uint32_t>(scene.eyes.size()) / compared);
     CheckRequest far = check, published = check, objects = check;
+    far.kind = PictureKind::quad;  // what meshes show does not depend on a plane
     far.plane = cache::PlanePlace::far_face;
     published.rules = cache::ValidityRules::published;
     objects.by_object = true;
@@ -165,6 +171,13 @@ StudySums sums_of(std::span<const StudyFrame> frames) {
         sums.cached.cpu_ms += frame.times->cached.cpu_ms;
         sums.full.ms += frame.times->full.ms;
         sums.full.cpu_ms += frame.times->full.cpu_ms;
+        sums.pictures += frame.times->pictures;
+        sums.meshes += frame.times->meshes;
+        sums.mesh_triangles += frame.times->mesh_triangles;
+        sums.made.made += frame.times->made.made;
+        sums.made.too_dear += frame.times->made.too_dear;
+        sums.made.read_texels += frame.times->made.read_texels;
+        sums.made.making_cpu_ms += frame.times->made.making_cpu_ms;
     }
     return sums;
 }

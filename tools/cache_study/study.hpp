@@ -24,6 +24,7 @@ struct StudyRequest {
     std::uint32_t width = 320, height = 240;
     bool pictures = false;                   ///< a sheet of bird's-eye views
     std::optional<gl::BackendKind> backend;  ///< that draws the frames; none: they are counted only
+    PictureKind kind = PictureKind::quad;    ///< of those that the backend draws
     bool views = false;                      ///< some frames as pictures, and whether they are right; with a backend
 };
 
@@ -38,6 +39,9 @@ DrawWork work_of(const cache::BoxTree& tree, const cache::CachePlan& plan);
 struct FrameTimes {
     DrawTimes cached, full;
     std::uint32_t pictures = 0, leaves = 0;  ///< in view: drawn as pictures, and as triangles
+    std::uint32_t meshes = 0;                ///< of the pictures: on meshes, of so many triangles
+    std::uint64_t mesh_triangles = 0;
+    MeshCounts made;
 };
 
 /// A frame of the cache. Errors are of what is drawn as pictures, in pixels at the corner of the view.
@@ -59,6 +63,8 @@ struct StudySums {
     std::uint64_t frames = 0;
     std::uint64_t drawn = 0, faster = 0, faster_cpu = 0;  ///< frames that were drawn, and those that the cache made faster
     DrawTimes cached, full;
+    std::uint64_t pictures = 0, meshes = 0, mesh_triangles = 0;  ///< that were drawn
+    MeshCounts made;
 };
 StudySums sums_of(std::span<const StudyFrame> frames);
 StudySums sums_after_first(const std::vector<StudyFrame>& frames);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "render/effects/effects.hpp"
@@ -16,6 +17,8 @@ namespace {
 constexpr std::array<float, 3> day_sky{0.62F, 0.76F, 0.90F};
 /// Texels that a picture has free on each side.
 constexpr double margin_texels = 1;
+/// Drawn at once; with more, a frame waits.
+constexpr std::uint32_t mesh_triangles_a_frame = 1U << 18U;
 /// Pixels by which two neighbours may be apart: each may be one beside its place.
 constexpr double gap_pixels = 2;
 
@@ -31,6 +34,21 @@ constexpr double seam_pixels = 0.1;
 /// By how much the box of a picture is grown for its capture, where its farthest point is so far away.
 double grown_m(double far_m, const cache::PixelAngles& pixels, double texel_rad) {
     return far_m * (gap_pixels * pixels.smallest_rad + texel_rad);
+}
+
+/// The solid angle of the faces that look at the eye, by their middles.
+double faces_sr(const Box& box, const dvec3& eye) {
+    double sum = 0;
+    const dvec3 side = box.max - box.min;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (eye[axis] >= box.min[axis] && eye[axis] <= box.max[axis]) continue;
+        dvec3 middle = box.centre();
+        middle[axis] = eye[axis] < box.min[axis] ? box.min[axis] : box.max[axis];
+        const double distance = glm::length(middle - eye);
+        sum +=
+            side[(axis + 1) % 3] * side[(axis + 2) % 3] * std::abs(middle[axis] - eye[axis]) / (distance * distance * distance);
+    }
+    return sum;
 }
 
 /// Nothing is farther away from an eye.
@@ -49,7 +67,12 @@ DrawTimes Stopwatch::spent() const {
 }
 
 StudyDevice::StudyDevice(const StudyScene& scene, const DrawingOptions& options, StudyModel made)
-    : scene_(scene), options_(options), made_(std::move(made)), held_(scene.tree.boxes.size()), seam_m_(held_.size()) {}
+    : scene_(scene),
+      options_(options),
+      made_(std::move(made)),
+      held_(scene.tree.boxes.size()),
+      seam_m_(held_.size()),
+      meshes_(held_.size(), options.kind) {}
 
 Result<std::unique_ptr<StudyDevice>> StudyDevice::open(const StudyScene& scene, const DrawingOptions& options) {
     Pose view;
@@ -63,6 +86,7 @@ Result<std::unique_ptr<StudyDevice>> StudyDevice::open(const StudyScene& scene, 
     device.sky = options.colouring == Colouring::shaded ? day_sky : std::array<float, 3>{0, 0, 0};
     const std::size_t layers = std::max(scene.tree.boxes.size(), study->made_.objects.size());
     device.picture_layers = options.pictures ? static_cast<std::uint32_t>(layers) : 0;
+    device.mesh_triangles = study->meshes_.any() ? mesh_triangles_a_frame : 0;
     auto opened = gl::open_device(device);
     if (!opened) return opened.error();
     study->device_ = std::move(*opened);
@@ -70,6 +94,8 @@ Result<std::unique_ptr<StudyDevice>> StudyDevice::open(const StudyScene& scene, 
     if (auto loaded = study->device_->load(study->made_.model, effects::assemble_program); !loaded) return loaded.error();
     if (study->device_->picture_layers() < device.picture_layers)
         return Error{"image cache", study->device_->picture_reason(), "Use another --backend", ErrorKind::unsupported};
+    if (study->meshes_.any() && !study->device_->draws_meshes())
+        return Error{"image cache", study->device_->picture_reason(), "Use --kind quad", ErrorKind::unsupported};
     return study;
 }
 
@@ -153,11 +179,13 @@ void StudyDevice::add_children(cache::Index parent, cache::Index first, std::uin
 }
 
 void StudyDevice::capture(const Pose& pose, const gl::CachePicture& picture, const std::vector<gl::DrawItem>& items,
-                          const std::vector<gl::CachePicture>& children) {
+                          const std::vector<gl::CachePicture>& children, std::span<float> depths) {
     device_->draws.plays();
-    if (device_->capture_picture(picture, items, children)) return;
-    device_->begin_frame(pose);  // all that wait are drawn: there is room again
-    device_->capture_picture(picture, items, children);
+    for (const bool again : {false, true}) {
+        if (depths.empty() ? device_->capture_picture(picture, items, children) : device_->capture_depths(picture, items, depths))
+            return;
+        if (!again) device_->begin_frame(pose);  // all that wait are drawn: there is room again
+    }
 }
 
 void StudyDevice::make_pictures(const cache::CachePlan& plan, const Pose& pose, const cache::PixelAngles& pixels) {
@@ -170,14 +198,30 @@ void StudyDevice::make_pictures(const cache::CachePlan& plan, const Pose& pose, 
         if (refresh.from_children) add_children(refresh.box, box.first_child, box.child_count, picture.eye, children_[i]);
         held_[refresh.box] = captured_picture(box.box, picture, pixels, refresh.box);
         seam_m_[refresh.box] = seam_pixels * pixels.smallest_rad * picture.far_m;
-        capture(pose, held_[refresh.box], refresh.from_children ? no_items : made_.of_captured[refresh.box], children_[i]);
+        std::span<float> depths;
+        if (refresh.from_children)
+            meshes_.drop(refresh.box);
+        else if (meshes_.any())
+            depths = meshes_.depths_of(refresh.box, picture.texels);
+        capture(pose, held_[refresh.box], refresh.from_children ? no_items : made_.of_captured[refresh.box], children_[i],
+                depths);
     }
 }
 
-void StudyDevice::finish(const Pose& pose) {
+/// Captures that wait are drawn, and their depths are there.
+void StudyDevice::begin(const Pose& pose) {
     device_->draws.plays();
     device_->begin_frame(pose);
+    items_.clear();
+    pictures_.clear();
+    shown_meshes_.clear();
+}
+
+void StudyDevice::finish() {
+    device_->draws.plays();
     device_->draw(items_);
+    std::reverse(shown_meshes_.begin(), shown_meshes_.end());  // the nearest first
+    device_->draw_picture_meshes(shown_meshes_);
     device_->end_slice();
     device_->draw_pictures(pictures_);
     device_->end_slice();
@@ -185,36 +229,52 @@ void StudyDevice::finish(const Pose& pose) {
     device_->finish_frame();
 }
 
+/// A box's picture, by the kind that is chosen.
+void StudyDevice::show(cache::Index box, const cache::Picture& picture, const Pose& pose, DrawnFrame& drawn) {
+    const gl::CachePicture shown = shown_picture(box);
+    StudyMeshes::Seen seen;
+    const double pixel_rad = model::pixel_angle(pose, options_.viewport);
+    const double texel_rad = cache::texel_rad(picture, pose.position);
+    seen.faces_px = faces_sr(shown.box, pose.position) / (pixel_rad * pixel_rad);
+    seen.texels_px = texel_rad * texel_rad / (pixel_rad * pixel_rad);
+    ++drawn.pictures;
+    if (!meshes_.shows(box, held_[box], picture, seen)) {
+        pictures_.push_back(shown);
+        return;
+    }
+    shown_meshes_.push_back(meshes_.mesh(box, held_[box]));
+    ++drawn.meshes;
+    drawn.mesh_triangles += shown_meshes_.back().indices.size() / 3;
+}
+
 DrawnFrame StudyDevice::draw_cached(const cache::CachePlan& plan, const Pose& pose, const cache::PixelAngles& pixels) {
     const Stopwatch watch;
     make_pictures(plan, pose, pixels);
+    begin(pose);
     const model::Frustum frustum = frustum_of(pose);
-    items_.clear();
-    pictures_.clear();
     DrawnFrame drawn;
     for (const cache::BoxDraw& draw : plan.draws) {
         if (!model::visible(frustum, scene_.tree.boxes[draw.box].box)) continue;
         if (draw.picture) {
-            pictures_.push_back(shown_picture(draw.box));
+            show(draw.box, plan.after.pictures[draw.box], pose, drawn);
             continue;
         }
         ++drawn.leaves;
         items_.push_back(made_.of_leaf[draw.box]);
     }
-    finish(pose);
+    finish();
     drawn.times = watch.spent();
-    drawn.pictures = static_cast<std::uint32_t>(pictures_.size());
+    drawn.made = meshes_.take_counts();
     return drawn;
 }
 
 DrawTimes StudyDevice::draw_full(const Pose& pose) {
     const Stopwatch watch;
     const model::Frustum frustum = frustum_of(pose);
-    items_.clear();
-    pictures_.clear();
+    begin(pose);
     for (const StudyObject& part : made_.whole)
         if (model::visible(frustum, part.box)) items_.push_back(part.item);
-    finish(pose);
+    finish();
     return watch.spent();
 }
 
@@ -234,14 +294,19 @@ DrawnFrame StudyDevice::draw_objects(const Pose& pose, const cache::PixelAngles&
         picture->texels = texels;
         captured[i].push_back(object.item);
         shown.push_back(captured_picture(object.box, *picture, pixels, static_cast<std::uint32_t>(i)));
-        capture(pose, shown.back(), captured[i], {});
+        capture(pose, shown.back(), captured[i], {}, {});
     }
     std::sort(shown.begin(), shown.end(),
               [](const gl::CachePicture& a, const gl::CachePicture& b) { return a.plane_m > b.plane_m; });
+    begin(pose);
     items_ = near;
     pictures_ = shown;
-    finish(pose);
-    return {watch.spent(), static_cast<std::uint32_t>(shown.size()), static_cast<std::uint32_t>(near.size())};
+    finish();
+    DrawnFrame drawn;
+    drawn.times = watch.spent();
+    drawn.pictures = static_cast<std::uint32_t>(shown.size());
+    drawn.leaves = static_cast<std::uint32_t>(near.size());
+    return drawn;
 }
 
 Result<gl::PixelImage> StudyDevice::read_pixels() {

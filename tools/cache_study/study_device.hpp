@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "render/cache/update.hpp"
 #include "render/gl/device.hpp"
+#include "tools/cache_study/study_meshes.hpp"
 #include "tools/cache_study/study_model.hpp"
 
 namespace surefoot::cache_study {
@@ -20,6 +22,7 @@ struct DrawingOptions {
     Colouring colouring = Colouring::shaded;
     cache::PlanePlace plane = cache::PlanePlace::harmonic_mean;  ///< where pictures are captured and shown
     bool pictures = true;                                        ///< else it can only draw in full
+    PictureKind kind = PictureKind::quad;
 };
 
 /// What a frame took, until the picture was whole.
@@ -41,6 +44,9 @@ private:
 struct DrawnFrame {
     DrawTimes times;
     std::uint32_t pictures = 0, leaves = 0;  ///< drawn: pictures, and boxes as triangles
+    std::uint32_t meshes = 0;                ///< of the pictures
+    std::uint64_t mesh_triangles = 0;
+    MeshCounts made;
 };
 
 /// A device that holds a scene and the pictures of its boxes. All calls on one thread.
@@ -70,8 +76,10 @@ private:
     void add_children(cache::Index parent, cache::Index first, std::uint32_t count, const dvec3& eye,
                       std::vector<gl::CachePicture>& to) const;
     void capture(const Pose& pose, const gl::CachePicture& picture, const std::vector<gl::DrawItem>& items,
-                 const std::vector<gl::CachePicture>& children);
-    void finish(const Pose& pose);
+                 const std::vector<gl::CachePicture>& children, std::span<float> depths);
+    void begin(const Pose& pose);
+    void finish();
+    void show(cache::Index box, const cache::Picture& picture, const Pose& pose, DrawnFrame& drawn);
     [[nodiscard]] model::Frustum frustum_of(const Pose& pose) const;
 
     const StudyScene& scene_;
@@ -83,6 +91,8 @@ private:
     std::vector<std::vector<gl::CachePicture>> children_;
     std::vector<gl::DrawItem> items_;
     std::vector<gl::CachePicture> pictures_;
+    StudyMeshes meshes_;
+    std::vector<gl::PictureMesh> shown_meshes_;
 };
 
 }  // namespace surefoot::cache_study

@@ -132,11 +132,13 @@ Result<CheckedFrames> check_pictures(const StudyScene& scene, const CheckRequest
     options.colouring = Colouring::by_object;
     options.plane = request.plane;
     options.fov_y_rad = request.fov_y_rad;
+    options.kind = request.kind;
     auto cached = StudyDevice::open(scene, options);
     if (!cached) return cached.error();
     const std::uint32_t samples = std::clamp(max_fine_px / std::max({request.width, request.height, 1U}), 1U, samples_a_side);
     options.viewport = {request.width * samples, request.height * samples};
     options.pictures = false;
+    options.kind = PictureKind::quad;
     auto fine = StudyDevice::open(scene, options);
     if (!fine) return fine.error();
     CheckedFrames checked;
@@ -178,6 +180,7 @@ Result<CheckedFrames> check_pictures(const StudyScene& scene, const CheckRequest
         checked.worst = std::max(checked.worst, wrong.wrong);
         checked.pictures += drawn.pictures;
         checked.leaves += drawn.leaves;
+        checked.meshes += drawn.meshes;
     }
     return checked;
 }

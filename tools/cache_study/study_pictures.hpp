@@ -7,6 +7,7 @@
 #include "render/cache/update.hpp"
 #include "render/gl/device.hpp"
 #include "rt/base/progress.hpp"
+#include "tools/cache_study/study_meshes.hpp"
 #include "tools/cache_study/study_scenes.hpp"
 
 namespace surefoot::cache_study {
@@ -36,6 +37,7 @@ struct CheckRequest {
     gl::BackendKind backend = gl::BackendKind::egl;
     cache::ValidityRules rules = cache::ValidityRules::corrected;
     cache::PlanePlace plane = cache::PlanePlace::harmonic_mean;
+    PictureKind kind = PictureKind::quad;
     bool by_object = false;               ///< one picture an object, and no cache
     std::uint32_t first = 0, frames = 0;  ///< of the scene's eyes; frames 0: all
     std::uint32_t every = 1;              ///< of them one is compared
@@ -47,6 +49,7 @@ struct CheckedFrames {
     std::uint64_t pixels = 0, wrong = 0;
     std::uint64_t uncovered = 0;             ///< of the wrong ones: what they show lies there, hidden by something else
     std::uint64_t pictures = 0, leaves = 0;  ///< drawn in them
+    std::uint64_t meshes = 0;                ///< of the pictures
     std::uint64_t worst = 0;                 ///< wrong pixels of one frame
 };
 

@@ -25,7 +25,7 @@ namespace {
 
 struct CacheStudyArguments {
     cache_study::StudyRequest request;
-    std::string size, birds_eye, backend{gl::usual_backend}, pictures;
+    std::string size, birds_eye, backend{gl::usual_backend}, pictures, kind{cache_study::picture_kinds().front().name};
     bool json = false;
 };
 
@@ -55,6 +55,8 @@ nlohmann::ordered_json cache_frame_json(const cache_study::StudyFrame& frame) {
     json["full_cpu_ms"] = frame.times->full.cpu_ms;
     json["pictures_in_view"] = frame.times->pictures;
     json["leaves_in_view"] = frame.times->leaves;
+    json["meshes_in_view"] = frame.times->meshes;
+    json["mesh_triangles"] = frame.times->mesh_triangles;
     return json;
 }
 
@@ -67,7 +69,14 @@ nlohmann::ordered_json study_times_json(const cache_study::StudySums& sums) {
             {"mean_ms", sums.cached.ms / frames},
             {"mean_full_ms", sums.full.ms / frames},
             {"mean_cpu_ms", sums.cached.cpu_ms / frames},
-            {"mean_full_cpu_ms", sums.full.cpu_ms / frames}};
+            {"mean_full_cpu_ms", sums.full.cpu_ms / frames},
+            {"mean_pictures", static_cast<double>(sums.pictures) / frames},
+            {"mean_meshes", static_cast<double>(sums.meshes) / frames},
+            {"mean_mesh_triangles", static_cast<double>(sums.mesh_triangles) / frames},
+            {"meshes_made", sums.made.made},
+            {"meshes_too_dear", sums.made.too_dear},
+            {"depths_read", sums.made.read_texels},
+            {"mean_meshing_cpu_ms", sums.made.making_cpu_ms / frames}};
 }
 
 nlohmann::ordered_json study_checks_json(const std::vector<cache_study::StudyCheck>& checks) {
@@ -76,7 +85,8 @@ nlohmann::ordered_json study_checks_json(const std::vector<cache_study::StudyChe
         json[check.what] = {{"frames", check.frames.frames},       {"wrong_frames", check.frames.wrong_frames},
                             {"pixels", check.frames.pixels},       {"wrong", check.frames.wrong},
                             {"uncovered", check.frames.uncovered}, {"most_wrong_of_a_frame", check.frames.worst},
-                            {"pictures", check.frames.pictures},   {"leaves", check.frames.leaves}};
+                            {"pictures", check.frames.pictures},   {"leaves", check.frames.leaves},
+                            {"meshes", check.frames.meshes}};
     return json;
 }
 
@@ -106,6 +116,7 @@ void print_study_json(const CacheStudyArguments& a, const cache_study::Study& st
                 {"triangles", study.triangles},
                 {"boxes", study.boxes},
                 {"filled_boxes", study.filled_boxes},
+                {"kind", a.kind},
                 {"width", a.request.width},
                 {"height", a.request.height},
                 {"walked_m", study.walked_m},
@@ -159,6 +170,11 @@ void print_study_times(const cache_study::Study& study, const cache_study::Study
                sums.cached.ms / frames, sums.full.ms / frames, sums.cached.cpu_ms / frames, sums.full.cpu_ms / frames);
     fmt::print("Faster with the cache: {:.1f} % of {} frames; by processor time {:.1f} %.\n",
                100 * static_cast<double>(sums.faster) / frames, sums.drawn, 100 * static_cast<double>(sums.faster_cpu) / frames);
+    if (sums.made.made + sums.made.too_dear == 0) return;
+    fmt::print("Meshes: {:.1f} of {:.1f} pictures a frame, with {:.0f} triangles; {} made, {} too dear, in {:.2f} ms a frame.\n",
+               static_cast<double>(sums.meshes) / frames, static_cast<double>(sums.pictures) / frames,
+               static_cast<double>(sums.mesh_triangles) / frames, sums.made.made, sums.made.too_dear,
+               sums.made.making_cpu_ms / frames);
 }
 
 void print_study_checks(const std::vector<cache_study::StudyCheck>& checks) {
@@ -239,6 +255,7 @@ int run_cache_study(CacheStudyArguments& a, const Context& context) {
         if (auto ok = probe_writable(a.birds_eye); !ok) return fail(ok.error());
         a.request.pictures = true;
     }
+    a.request.kind = cache_study::picture_kind_named(a.kind);
     const auto backend = gl::backend_named(a.backend);
     if (!backend) return misuse(backend.error());
     if ((*backend)->draws()) a.request.backend = (*backend)->kind;
@@ -298,6 +315,13 @@ void add_cache_study(CLI::App& app, Context& context) {
     c->add_option(
         "--backend", a->backend,
         "Backend that draws: " + gl::drawing_backends() + "; null: count only [" + std::string(gl::usual_backend) + "]");
+    std::string kind_help = "What shows a picture. ";
+    std::vector<std::string_view> kind_names;
+    for (const Named& kind : cache_study::picture_kinds()) {
+        kind_help += fmt::format("{}{}: {}", kind_names.empty() ? "" : "; ", kind.name, kind.help);
+        kind_names.push_back(kind.name);
+    }
+    c->add_option("--kind", a->kind, fmt::format("{} [{}]", kind_help, kind_names.front()))->check(one_of(kind_names));
     c->add_option(
          "--pictures", a->pictures,
          "Folder for five frames as PNG: with the cache, in full, their difference, and with a picture an object. Frames "
