@@ -26,6 +26,22 @@ struct DepthMeshLimits {
 
 enum class DepthMeshResult : std::uint8_t { made, empty, too_dear };
 
+/// Processor time of drawing a picture, us, as measured on llvmpipe: README.md.
+struct KindPrices {
+    double quad_us = 0.2, quad_ns_per_pixel = 5.6;
+    double mesh_us = 0.2, mesh_ns_per_pixel = 3.9, mesh_ns_per_triangle = 350;
+    [[nodiscard]] double quad(double pixels) const { return quad_us + 1e-3 * quad_ns_per_pixel * pixels; }
+    /// Pixels: of covered texels alone.
+    [[nodiscard]] double mesh(double pixels, double triangles) const {
+        return mesh_us + 1e-3 * (mesh_ns_per_pixel * pixels + mesh_ns_per_triangle * triangles);
+    }
+    /// Of a mesh that costs no more than the quad; 0: none does.
+    [[nodiscard]] double max_triangles(double quad_pixels, double mesh_pixels) const {
+        const double left_us = quad(quad_pixels) - mesh(mesh_pixels, 0);
+        return left_us > 0 ? 1e3 * left_us / mesh_ns_per_triangle : 0;
+    }
+};
+
 /// The error of inverse depths that a mesh may have, so that no point of it is farther from its place than on the picture's
 /// plane: a share, up to 1, of what the plane has itself.
 double mesh_tolerance(const Picture& picture, double share);

@@ -156,6 +156,21 @@ double inherited_error(double error, double tangent) {
     return left > 0 ? by * (1 + tangent * tangent) / left : infinite;
 }
 
+double faces_sr(const Box& box, const dvec3& eye) {
+    double sum = 0;
+    const dvec3 side = box.max - box.min;
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool below = eye[axis] < box.min[axis];
+        if (!below && !(eye[axis] > box.max[axis])) continue;
+        dvec3 middle = box.centre();
+        middle[axis] = below ? box.min[axis] : box.max[axis];
+        const dvec3 to = middle - eye;
+        const double distance = glm::length(to), area = side[(axis + 1) % 3] * side[(axis + 2) % 3];
+        sum += area * std::abs(to[axis]) / (distance * distance * distance);
+    }
+    return sum;
+}
+
 model::ConicRange valid_range(const Picture& picture, double max_rad) {
     // Of all eyes at a distance none is worse than one that is as far ahead and as far aside.
     const auto holds = [&](double distance) {

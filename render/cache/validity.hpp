@@ -74,6 +74,9 @@ double needed_texels(const Picture& picture, double max_texel_rad);
 /// Error that a picture inherits: what `error`, of a picture drawn into it, is on its own plane. tangent: Picture::tangent.
 double inherited_error(double error, double tangent);
 
+/// Solid angle of a box's faces that an eye sees, by their middles; 0 from inside.
+double faces_sr(const Box& box, const dvec3& eye);
+
 /// A sphere of eyes round the picture's own. Seen from each of them neither error nor texel is over max_rad. May be empty.
 model::ConicRange valid_range(const Picture& picture, double max_rad);
 

@@ -18,22 +18,6 @@ constexpr double rounded_down = 1 - 1e-6;   // errors are reported in float
 constexpr float new_share = 0.5F;           // of a cost that was measured anew
 constexpr float share_alone = 0.5F;         // of what lies across several boxes, for each by itself
 
-/// Solid angle of a box's faces that an eye sees; 0 from inside.
-double faces_sr(const Box& box, const dvec3& eye) {
-    double sum = 0;
-    const dvec3 side = box.max - box.min;
-    for (int axis = 0; axis < 3; ++axis) {
-        const bool below = eye[axis] < box.min[axis];
-        if (!below && !(eye[axis] > box.max[axis])) continue;
-        dvec3 middle = box.centre();
-        middle[axis] = below ? box.min[axis] : box.max[axis];
-        const dvec3 to = middle - eye;
-        const double distance = glm::length(to), area = side[(axis + 1) % 3] * side[(axis + 2) % 3];
-        sum += area * std::abs(to[axis]) / (distance * distance * distance);
-    }
-    return sum;
-}
-
 }  // namespace
 
 WalkCache::WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vector<Box> blended)

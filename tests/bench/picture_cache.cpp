@@ -1,7 +1,7 @@
 // Bench: the image cache along a path at one speed, by its picture and by CPU time. Two engines draw each frame in turns: with
 // pictures and without. Every tenth picture is compared with full detail. With a folder: writes the worst one, full detail and
 // the difference. bench_picture_cache MODEL.walk PATH.csv [FRAMES 300] [SELECTOR flat] [FOLDER] [STATE_DIR] [LIFT_M 0]
-// [SPEED_M_S 1.4] [view|surround] -> one JSON object.
+// [SPEED_M_S 1.4] [view|surround] -> one JSON object. On stderr, in the end: what these pictures would cost on meshes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "render/cache/depth_mesh.hpp"
 #include "render/engine.hpp"
+#include "render/gl/picture_faces.hpp"
 #include "render/image/image.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "tests/bench/bench_picture.hpp"
@@ -91,6 +93,65 @@ Result<Walker> open_walker(const bench::Scene& scene, const std::string& selecto
     return walker;
 }
 
+/// What the pictures of the last frame would cost on meshes of their depths.
+struct MeshFigures {
+    int pictures = 0, meshable = 0, cheaper = 0;
+    double quads_us = 0, meshes_us = 0, cheaper_us = 0, triangles = 0, covered = 0, making_us = 0;
+};
+
+MeshFigures mesh_figures(Engine& engine, const Pose& pose, double share) {
+    gl::Device& device = engine.device();
+    const std::vector<gl::CachePicture> pictures(engine.pictures().begin(), engine.pictures().end());
+    const auto full = engine.full_detail(pose);
+    const std::vector<gl::DrawItem> items(full.begin(), full.end());
+    const cache::KindPrices prices;
+    constexpr std::uint32_t max_triangles = 21'845;
+    cache::DepthMesher mesher(gl::picture_layer_px, max_triangles);
+    std::vector<float> depths(std::size_t{gl::picture_layer_px} * gl::picture_layer_px);
+    const double pixel_rad = model::pixel_angle(pose, engine.options().device.viewport);
+    MeshFigures figures;
+    for (const gl::CachePicture& picture : pictures) {
+        auto of_box = cache::picture_of(picture.box, picture.eye);
+        device.draws.plays();
+        if (!of_box || !device.capture_depths(picture, items, depths)) continue;
+        device.begin_frame(pose);
+        device.finish_frame();
+        for (float& depth : depths) depth /= static_cast<float>(gl::nearest_depth_m(picture));
+        const double texel_rad = picture.side_m / (picture.plane_m * picture.place.texels);
+        const double quad_us = prices.quad(cache::faces_sr(picture.box, pose.position) / (pixel_rad * pixel_rad));
+        const double start_us = process_cpu_us();
+        const auto made =
+            mesher.make(depths, picture.place.texels, {static_cast<float>(cache::mesh_tolerance(*of_box, share)), max_triangles});
+        figures.making_us += process_cpu_us() - start_us;
+        const bool dear = made == cache::DepthMeshResult::too_dear;
+        const double covered = mesher.covered(), texels = 1.0 * picture.place.texels * picture.place.texels;
+        const double triangles = dear ? max_triangles : static_cast<double>(mesher.indices().size()) / 3;
+        const double mesh_us = prices.mesh(covered * texel_rad * texel_rad / (pixel_rad * pixel_rad), triangles);
+        ++figures.pictures;
+        figures.meshable += dear ? 0 : 1;
+        figures.cheaper += mesh_us < quad_us ? 1 : 0;
+        figures.quads_us += quad_us;
+        figures.meshes_us += mesh_us;
+        figures.cheaper_us += std::min(mesh_us, quad_us);
+        figures.triangles += triangles;
+        figures.covered += covered / texels;
+    }
+    return figures;
+}
+
+void print_mesh_figures(Engine& engine, const Pose& pose) {
+    for (const double share : {0.25, 0.5, 1.0}) {
+        const MeshFigures f = mesh_figures(engine, pose, share);
+        const double n = std::max(1, f.pictures);
+        fmt::print(stderr,
+                   "{{\"bench\": \"picture_meshes\", \"share\": {}, \"pictures\": {}, \"meshable\": {}, \"cheaper\": {}, "
+                   "\"quads_us\": {:.0f}, \"meshes_us\": {:.0f}, \"cheaper_us\": {:.0f}, \"triangles\": {:.0f}, "
+                   "\"covered\": {:.2f}, \"making_us\": {:.0f}}}\n",
+                   share, f.pictures, f.meshable, f.cheaper, f.quads_us, f.meshes_us, f.cheaper_us, f.triangles / n,
+                   f.covered / n, f.making_us / n);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -141,6 +202,7 @@ int main(int argc, char** argv) {
         (void)image::write_png(folder + "/full.png", viewport.width, viewport.height, full);
         (void)image::write_png(folder + "/difference.png", viewport.width, viewport.height, difference);
     }
+    print_mesh_figures(*with->engine, pose_of(frames - 1));
     const double n = std::max(1, counted);
     fmt::print(
         "{{\"bench\": \"picture_cache\", \"frames\": {}, \"selector\": \"{}\", \"speed_m_s\": {}, \"keeps\": \"{}\", \"cpu_ms\": "

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "render/effects/effects.hpp"
@@ -34,21 +33,6 @@ constexpr double seam_pixels = 0.1;
 /// By how much the box of a picture is grown for its capture, where its farthest point is so far away.
 double grown_m(double far_m, const cache::PixelAngles& pixels, double texel_rad) {
     return far_m * (gap_pixels * pixels.smallest_rad + texel_rad);
-}
-
-/// The solid angle of the faces that look at the eye, by their middles.
-double faces_sr(const Box& box, const dvec3& eye) {
-    double sum = 0;
-    const dvec3 side = box.max - box.min;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (eye[axis] >= box.min[axis] && eye[axis] <= box.max[axis]) continue;
-        dvec3 middle = box.centre();
-        middle[axis] = eye[axis] < box.min[axis] ? box.min[axis] : box.max[axis];
-        const double distance = glm::length(middle - eye);
-        sum +=
-            side[(axis + 1) % 3] * side[(axis + 2) % 3] * std::abs(middle[axis] - eye[axis]) / (distance * distance * distance);
-    }
-    return sum;
 }
 
 /// Nothing is farther away from an eye.
@@ -235,7 +219,7 @@ void StudyDevice::show(cache::Index box, const cache::Picture& picture, const Po
     StudyMeshes::Seen seen;
     const double pixel_rad = model::pixel_angle(pose, options_.viewport);
     const double texel_rad = cache::texel_rad(picture, pose.position);
-    seen.faces_px = faces_sr(shown.box, pose.position) / (pixel_rad * pixel_rad);
+    seen.faces_px = cache::faces_sr(shown.box, pose.position) / (pixel_rad * pixel_rad);
     seen.texels_px = texel_rad * texel_rad / (pixel_rad * pixel_rad);
     ++drawn.pictures;
     if (!meshes_.shows(box, held_[box], picture, seen)) {

@@ -57,9 +57,7 @@ void StudyMeshes::make(BoxMesh& mesh, const gl::CachePicture& held, const cache:
     }
     cache::DepthMeshLimits limits{static_cast<float>(cache::mesh_tolerance(picture, mesh_share)), max_mesh_triangles};
     if (kind_ == PictureKind::cheaper) {
-        const double left_us = prices_.quad_us - prices_.mesh_us + 1e-3 * prices_.quad_ns_per_pixel * seen.faces_px -
-                               1e-3 * prices_.mesh_ns_per_pixel * seen.texels_px * mesh.covered;
-        const double room = std::max(0.0, 1e3 * left_us / prices_.mesh_ns_per_triangle);
+        const double room = prices_.max_triangles(seen.faces_px, seen.texels_px * mesh.covered);
         limits.max_triangles = static_cast<std::uint32_t>(std::min<double>(limits.max_triangles, room));
     }
     const cache::DepthMeshResult result = mesher_.make(mesh.depths, held.place.texels, limits);
@@ -83,9 +81,7 @@ bool StudyMeshes::shows(cache::Index box, const gl::CachePicture& held, const ca
     if (mesh.state != State::made) return false;
     if (kind_ == PictureKind::mesh) return true;
     const double triangles = static_cast<double>(mesh.indices.size()) / 3;
-    return prices_.mesh_us +
-               1e-3 * (prices_.mesh_ns_per_pixel * seen.texels_px * mesh.covered + prices_.mesh_ns_per_triangle * triangles) <
-           prices_.quad_us + 1e-3 * prices_.quad_ns_per_pixel * seen.faces_px;
+    return prices_.mesh(seen.texels_px * mesh.covered, triangles) < prices_.quad(seen.faces_px);
 }
 
 gl::PictureMesh StudyMeshes::mesh(cache::Index box, const gl::CachePicture& held) const {

@@ -19,12 +19,6 @@ std::span<const Named> picture_kinds();
 /// Of a name of picture_kinds().
 PictureKind picture_kind_named(std::string_view name);
 
-/// Processor time of drawing, as measured on llvmpipe: render/cache/README.md. Small triangles, without their pixels.
-struct KindPrices {
-    double quad_us = 0.2, quad_ns_per_pixel = 5.6;
-    double mesh_us = 0.2, mesh_ns_per_pixel = 3.9, mesh_ns_per_triangle = 350;
-};
-
 /// Share of the plane's error that a mesh may have.
 constexpr double mesh_share = 0.5;
 constexpr std::uint32_t max_mesh_triangles = 8192;
@@ -69,7 +63,7 @@ private:
     void make(BoxMesh& mesh, const gl::CachePicture& held, const cache::Picture& picture, const Seen& seen);
 
     PictureKind kind_;
-    KindPrices prices_;
+    cache::KindPrices prices_;
     cache::DepthMesher mesher_;
     std::vector<BoxMesh> meshes_;
     MeshCounts counts_;
