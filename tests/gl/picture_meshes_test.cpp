@@ -19,9 +19,7 @@ const Box meshed_cube{dvec3(-1, -1, -7), dvec3(1, 1, -5)};
 /// A slope, a far wall and a near square. None hides another: what is uncovered was not captured.
 PictureScene meshed_scene() {
     SmallModel small;
-    auto board = plain(1, 1, 1, 1, model::effect_texture);
-    board.texture = small.texture({250, 240, 20, 255}, {90, 20, 200, 255}, 16);
-    const std::array materials{small.material(board), small.material(plain(0.2F, 0.9F, 0.3F)),
+    const std::array materials{small.material(plain(0.9F, 0.8F, 0.1F)), small.material(plain(0.2F, 0.9F, 0.3F)),
                                small.material(plain(0.9F, 0.2F, 0.3F))};
     PictureScene scene;
     const mat3 leaning(glm::mat3_cast(glm::angleAxis(-0.7F, vec3(1, 0, 0))));
