@@ -114,16 +114,16 @@ void DepthMesher::judge_edge(Point middle, int half, bool horizontal) {
     for (const int way : {1, -1}) {
         const Point apex = horizontal ? Point{middle.x, middle.y + way * half} : Point{middle.x + way * half, middle.y};
         const std::size_t which = 2 * at(middle) + side_of(middle.x, middle.y, apex.x, apex.y);
-        covers_[which] = Cover::nothing;
+        covers_[which] = Filled::nothing;
         if (apex.x < 0 || apex.y < 0 || apex.x > side_ || apex.y > side_) continue;
-        std::array<Cover, 2> covers{};
+        std::array<Filled, 2> covers{};
         std::array<float, 2> errors{};
         for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
             const Point& from = end == 0 ? a : b;
             if (half == 1) {
                 const int x = std::min(from.x, apex.x), y = std::min(from.y, apex.y);
                 const float depth = texel(x, y);
-                covers[end] = depth > 0 ? Cover::all : Cover::nothing;
+                covers[end] = depth > 0 ? Filled::all : Filled::nothing;
                 if (!(depth > 0)) continue;
                 const float shown =
                     0.5F * (value(from, towards(x - from.x, y - from.y)) + value(apex, towards(x - apex.x, y - apex.y)));
@@ -134,11 +134,11 @@ void DepthMesher::judge_edge(Point middle, int half, bool horizontal) {
                 errors[end] = errors_[at(square)];
             }
         }
-        Cover cover = covers[0] == covers[1] ? covers[0] : Cover::mixed;
-        if (cover == Cover::all && cuts_along(middle, apex) > 0) cover = Cover::mixed;
+        Filled cover = covers[0] == covers[1] ? covers[0] : Filled::mixed;
+        if (cover == Filled::all && cuts_along(middle, apex) > 0) cover = Filled::mixed;
         covers_[which] = cover;
-        if (cover == Cover::mixed) error = must_split;
-        if (cover != Cover::all || error == must_split) continue;
+        if (cover == Filled::mixed) error = must_split;
+        if (cover != Filled::all || error == must_split) continue;
         const int in_x = apex.x - middle.x, in_y = apex.y - middle.y;
         const float flat = 0.5F * (value(a, towards(middle.x - a.x + in_x, middle.y - a.y + in_y)) +
                                    value(b, towards(middle.x - b.x + in_x, middle.y - b.y + in_y)));
@@ -146,7 +146,7 @@ void DepthMesher::judge_edge(Point middle, int half, bool horizontal) {
         error = std::max(error, bulge + std::max(errors[0], errors[1]));
     }
     // Along a cut, sides are as short as walls are: else there would be cracks between them.
-    const bool both = covers_[2 * at(middle)] == Cover::all && covers_[2 * at(middle) + 1] == Cover::all;
+    const bool both = covers_[2 * at(middle)] == Filled::all && covers_[2 * at(middle) + 1] == Filled::all;
     if (both && cuts_along(a, b) > 0) error = must_split;
     errors_[at(middle)] = error;
 }
@@ -160,12 +160,12 @@ void DepthMesher::judge_square(Point middle, int half) {
     for (const Point apex : {Point{b.x, a.y}, Point{a.x, b.y}}) {
         const std::size_t which = 2 * at(middle) + side_of(middle.x, middle.y, apex.x, apex.y);
         const Point level{middle.x, apex.y}, upright{apex.x, middle.y};
-        const Cover first = covers_[2 * at(level) + side_of(level.x, level.y, middle.x, middle.y)];
-        const Cover second = covers_[2 * at(upright) + side_of(upright.x, upright.y, middle.x, middle.y)];
-        const Cover cover = first == second ? first : Cover::mixed;
+        const Filled first = covers_[2 * at(level) + side_of(level.x, level.y, middle.x, middle.y)];
+        const Filled second = covers_[2 * at(upright) + side_of(upright.x, upright.y, middle.x, middle.y)];
+        const Filled cover = first == second ? first : Filled::mixed;
         covers_[which] = cover;
-        if (cover == Cover::mixed) error = must_split;
-        if (cover != Cover::all || error == must_split) continue;
+        if (cover == Filled::mixed) error = must_split;
+        if (cover != Filled::all || error == must_split) continue;
         const auto seen_from = [&](const Point& p) { return towards(middle.x - p.x, middle.y - p.y); };
         const float flat = 0.5F * (value(a, seen_from(a)) + value(b, seen_from(b)));
         const float bulge = std::abs(value(middle, towards(apex.x - middle.x, apex.y - middle.y)) - flat);
@@ -200,7 +200,7 @@ bool DepthMesher::split(Point a, Point b, Point apex) {
     if (std::abs(a.x - b.x) == 1 && std::abs(a.y - b.y) == 1)
         return !(texel(std::min(a.x, b.x), std::min(a.y, b.y)) > 0) || add(a, b, apex);
     const Point middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
-    if (covers_[2 * at(middle) + side_of(middle.x, middle.y, apex.x, apex.y)] == Cover::nothing) return true;
+    if (covers_[2 * at(middle) + side_of(middle.x, middle.y, apex.x, apex.y)] == Filled::nothing) return true;
     if (errors_[at(middle)] <= tolerance_) return add(a, b, apex);
     return split(a, apex, middle) && split(apex, b, middle);
 }

@@ -42,8 +42,8 @@ struct KindPrices {
     }
 };
 
-/// The error of inverse depths that a mesh may have, so that no point of it is farther from its place than on the picture's
-/// plane: a share, up to 1, of what the plane has itself.
+/// The error of inverse depths that a mesh may have: a share, up to 1, of what the picture's plane has. No point of it is farther
+/// from its place than on the plane.
 double mesh_tolerance(const Picture& picture, double share);
 
 /// Bound of the angle between a point of such a mesh and its true place, for an eye that has moved; as a tangent. Infinite as
@@ -75,7 +75,7 @@ private:
         int x = 0, y = 0;
     };
     /// Whether the texels of a triangle are covered: nothing, all without a jump, or anything else.
-    enum class Cover : std::uint8_t { nothing, all, mixed };
+    enum class Filled : std::uint8_t { nothing, all, mixed };
 
     [[nodiscard]] float texel(int x, int y) const {
         return x >= 0 && y >= 0 && x < side_ && y < side_ ? depths_[static_cast<std::size_t>(y) * stride_ + x] : 0.0F;
@@ -102,7 +102,7 @@ private:
     std::vector<float> depths_;         ///< by texel; 0: nothing
     std::vector<float> values_;         ///< by point, where all its texels are joined, else below 0
     std::vector<float> errors_;         ///< by point, of the triangles whose longest side it halves; infinite: they must be split
-    std::vector<Cover> covers_;         ///< of these two triangles
+    std::vector<Filled> covers_;        ///< of these two triangles
     std::vector<std::uint16_t> known_;  ///< by point and group: the corner, plus 1
     std::vector<DepthCorner> corners_;
     std::vector<std::uint16_t> indices_;

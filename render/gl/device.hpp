@@ -294,8 +294,8 @@ public:
     bool capture_picture(const CachePicture& picture, std::span<const DrawItem> items) REQUIRES(draws) {
         return capture_picture(picture, items, {});
     }
-    /// The same, and its depths are read into `depths`, by rows from the lowest: 0 where nothing is, else
-    /// nearest_depth_m() of the picture over the texel's own depth. Waits for the capture. What pictures show has none.
+    /// The same, and its depths are read into `depths`, by rows from the lowest. A depth is nearest_depth_m() of the picture over
+    /// the texel's own, or 0 where nothing is. Waits for the capture. What pictures show has none.
     virtual bool capture_depths(const CachePicture& picture, std::span<const DrawItem> items, std::span<float> depths)
         REQUIRES(draws) {
         static_cast<void>(picture), static_cast<void>(items), static_cast<void>(depths);
