@@ -13,7 +13,8 @@ namespace surefoot::cache_study {
 
 namespace {
 
-constexpr std::array<Named, 3> kinds = {Named{"quad", "faces of the box, blended"}, Named{"meshed", "a mesh of the depths, opaque"},
+constexpr std::array<Named, 3> kinds = {Named{"quad", "faces of the box, blended"},
+                                        Named{"meshed", "a mesh of the depths, opaque"},
                                         Named{"cheaper", "for each picture the one that costs less to draw"}};
 
 double thread_cpu_ms() {
