@@ -27,6 +27,9 @@ constexpr double value_share = 1e-5;             // of the picture: of what save
 constexpr double min_rate_share = 1e-7;          // of the picture, a us: the least that time is worth beside what is shown more
 constexpr std::uint32_t first_picture_item = 1;  // of ItemKind::refresh; the shadow map is below
 constexpr std::size_t uncovered_chunk = 32;
+constexpr std::uint32_t timed_every = 8;  // frames with pictures
+constexpr double min_timed_us = 200;      // by the table; less says nothing
+constexpr double learnt_share = 0.25, min_picture_factor = 0.25, max_picture_factor = 4;
 
 double us_of(const model::FrameCombine& combine, const model::ItemCost& cost) {
     return static_cast<double>(combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us);
@@ -131,7 +134,8 @@ const model::CoverBits& Engine::cover(const Pose& now, const prepare::Region& ne
 double Engine::Impl::picture_us(cache::Index box, const Pose& pose) const {
     const model::Viewport viewport = options.device.viewport;
     const double pixel_rad = model::pixel_angle(pose, viewport) / static_cast<double>(drawn_resolution);
-    return static_cast<double>(pictures.draw_us(box, pose.position, pixel_rad, 1.0 * viewport.width * viewport.height));
+    const float table_us = pictures.draw_us(box, pose.position, pixel_rad, 1.0 * viewport.width * viewport.height);
+    return picture_factor * static_cast<double>(table_us);
 }
 
 /// The pictures of the set are drawn whatever else is. Their price is part of all predictions.
@@ -168,6 +172,7 @@ void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const selec
     const float a_ms = by_budget ? set.curve.value_at(room_us + 1000.0F) - set.curve.value_at(room_us) : 0.0F;
     const double rate = std::max(1e-3 * static_cast<double>(a_ms), value_share * set.full_value / usual_budget_us);
     const double buying = std::max(rate, min_rate_share * set.full_value);
+    view.picture_factor = picture_factor;
     view.us_per_value = by_budget && buying > 0 ? 1 / buying : 0.0;
     const std::span<const cache::CacheOffer> plan_of_pictures = pictures.plan(view);
     double left_us = (by_budget ? limited_share : unlimited_share) * budget_us;
@@ -385,14 +390,24 @@ std::vector<std::uint8_t> Engine::birds_eye(std::span<const cache::FrameBox> fra
     return cache::birds_eye_view(cache::seen_boxes(boxes, frame), bounds, eye, side_px);
 }
 
-void Engine::Impl::draw_pictures(SubmitReport& report) {
+/// A frame's time is corrected as a whole, mostly by what forms take. So from time to time pictures are timed by themselves: all
+/// before them is waited for, and then they are.
+void Engine::Impl::draw_pictures(const SubmitLimits& limits, SubmitReport& report) {
     if (shown_pictures.empty()) return;
     device->draws.plays();
+    const bool timed =
+        limits.now_ns != nullptr && report.pictures_us > picture_factor * min_timed_us && ++picture_frames % timed_every == 0;
+    if (timed) device->wait_slices(0);
+    const double from_us = now_us(limits);
     device->charge_us(report.pictures_us);
     device->draw_pictures(shown_pictures);
     device->end_slice();
-    device->wait_slices(1);
+    device->wait_slices(timed ? 0 : 1);
     ++report.slices;
+    if (!timed) return;
+    const double sample = picture_factor * (now_us(limits) - from_us) / (report.pictures_us * correction.factor);
+    if (std::isfinite(sample))
+        picture_factor += learnt_share * (std::clamp(sample, min_picture_factor, max_picture_factor) - picture_factor);
 }
 
 }  // namespace surefoot

@@ -91,14 +91,16 @@ struct Engine::Impl {
     std::vector<ShownPicture> shown_boxes GUARDED_BY(draws);  ///< the same, with their boxes
     std::vector<cache::Index> made_boxes GUARDED_BY(draws);   ///< that got a picture in this frame
     std::vector<cache::FrameBox> frame_boxes GUARDED_BY(draws);
-    std::vector<UncoveredItem> uncovered GUARDED_BY(draws);   ///< leaves whose pictures are not valid
-    std::vector<bool> is_uncovered GUARDED_BY(draws);         ///< by node; all false between frames
+    std::vector<UncoveredItem> uncovered GUARDED_BY(draws);  ///< leaves whose pictures are not valid
+    std::vector<bool> is_uncovered GUARDED_BY(draws);        ///< by node; all false between frames
     model::CoverBits cover_bits GUARDED_BY(draws);
-    cache::EyeCourse course GUARDED_BY(draws);    ///< of cover()
-    double turn_rad GUARDED_BY(draws) = 0;        ///< of the views after it
-    double pictures_us GUARDED_BY(draws) = 0;     ///< to draw the pictures of the cut's set, as predicted
-    double pictures_value GUARDED_BY(draws) = 0;  ///< of what the drawn pictures show
-    double after_us GUARDED_BY(draws) = 0;        ///< of what comes after the last slice, whatever is drawn before
+    cache::EyeCourse course GUARDED_BY(draws);           ///< of cover()
+    double turn_rad GUARDED_BY(draws) = 0;               ///< of the views after it
+    double pictures_us GUARDED_BY(draws) = 0;            ///< to draw the pictures of the cut's set, as predicted
+    double picture_factor GUARDED_BY(draws) = 1;         ///< time to draw pictures, over the table's and the frame's correction
+    std::uint32_t picture_frames GUARDED_BY(draws) = 0;  ///< that drew enough of them to be timed
+    double pictures_value GUARDED_BY(draws) = 0;         ///< of what the drawn pictures show
+    double after_us GUARDED_BY(draws) = 0;               ///< of what comes after the last slice, whatever is drawn before
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
@@ -181,7 +183,7 @@ struct Engine::Impl {
     void count_boxes(SubmitReport& report) REQUIRES(draws);
     void draw_uncovered(const SubmitLimits& limits, double start_us, model::ItemCost& so_far, SubmitReport& report)
         REQUIRES(draws);
-    void draw_pictures(SubmitReport& report) REQUIRES(draws);
+    void draw_pictures(const SubmitLimits& limits, SubmitReport& report) REQUIRES(draws);
     [[nodiscard]] std::span<const gl::DrawItem> contents_of(cache::Index box) const {
         return std::span(picture_items).subspan(pictures.boxes().first_node(box), pictures.boxes().nodes(box).size());
     }

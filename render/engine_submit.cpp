@@ -136,7 +136,10 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         rest_stand_in += {slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
     }
     bool full = true;
-    float in_flight_us = 0, unfinished_us = before_us(report.shadow_refreshed) + static_cast<float>(report.captures_us);
+    // New pictures change the target, where some drivers wait until they are drawn. So what beginning took is of them.
+    const double begun_us = limits.now_ns != nullptr ? (now_us(limits) - start_us) / correction.factor : 0.0;
+    float in_flight_us = 0,
+          unfinished_us = before_us(report.shadow_refreshed) + static_cast<float>(std::max(0.0, report.captures_us - begun_us));
     if (beside_us() > 0.0) device->charge_us(beside_us());
     const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
     for (const select::Slice& slice : plan.slices) {
@@ -155,7 +158,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         if (!full) ++report.downgraded_slices;
     }
     draw_uncovered(limits, start_us, so_far, report);
-    draw_pictures(report);
+    draw_pictures(limits, report);
     report.one_more_ms = one_more_ms;
     report.dropped_objects = cut.dropped.count;
     report.worst_error_rad = std::max(report.worst_error_rad, cut.dropped.error_rad);

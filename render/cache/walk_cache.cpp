@@ -197,6 +197,10 @@ float WalkCache::draw_us(Index box, const dvec3& eye, double pixel_rad, double v
     return options_.picture_us + 1e-3F * options_.picture_ns_per_pixel * static_cast<float>(pixels);
 }
 
+float WalkCache::draw_us(Index box, const PlanView& view) const {
+    return static_cast<float>(view.picture_factor) * draw_us(box, view.course.eye, view.pixel_rad, view.view_px);
+}
+
 /// Of a picture of the box in a frame, without its own time.
 float WalkCache::full_worth_us(Index box, double us_per_value) const {
     return saving_us_[box] + static_cast<float>(us_per_value) * value_[box].missing;
@@ -208,7 +212,7 @@ float WalkCache::us_of(const model::FrameCombine& combine, const model::ItemCost
 
 /// A new picture of the box, where it pays. False: it does not.
 bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) const {
-    const float saves_us = full_worth_us(box, view.us_per_value) - draw_us(box, view.course.eye, view.pixel_rad, view.view_px);
+    const float saves_us = full_worth_us(box, view.us_per_value) - draw_us(box, view);
     if (!(saves_us > min_saving_us)) return false;
     if (before_blended(boxes_.filled(box))) return false;
     const auto prospect = prospect_of(boxes_.filled(box), view.course, allowed_rad(box, boxes_.filled(box), view.pixels));
@@ -261,8 +265,7 @@ float WalkCache::own_net_us(Index box, const PlanView& view) const {
     if (!(facts_[box].net_us > 0.0F) && !held_[box].any()) return 0;
     if (!options_.surround && !model::visible(*view.frustum, boxes_.filled(box))) return 0;
     if (!serves_on(box, view)) return facts_[box].net_us;
-    return std::max(facts_[box].net_us,
-                    full_worth_us(box, view.us_per_value) - draw_us(box, view.course.eye, view.pixel_rad, view.view_px));
+    return std::max(facts_[box].net_us, full_worth_us(box, view.us_per_value) - draw_us(box, view));
 }
 
 void WalkCache::choose(Index i, const PlanView& view) {

@@ -55,6 +55,7 @@ struct PlanView {
     double pixel_rad = 1e-3;                  ///< in the middle of the view
     double view_px = 0;                       ///< of the whole view
     double max_price_us = 0;                  ///< of a picture
+    double picture_factor = 1;                ///< on what draw_us() predicts
     double us_per_value = 0;                  ///< what the frame would pay for a weighted pixel; 0: time is all that counts
     model::FrameCombine combine;
 };
@@ -145,6 +146,7 @@ private:
         std::uint32_t texels = 0;  ///< of a side; 0: none was refused
         float worth_us = 0;
     };
+    [[nodiscard]] float draw_us(Index box, const PlanView& view) const;
     [[nodiscard]] float full_worth_us(Index box, double us_per_value) const;
     [[nodiscard]] bool work_out(Index box, const PlanView& view, CacheOffer& offer) const;
     void refresh_facts(const PlanView& view);

@@ -329,6 +329,44 @@ TEST(PictureCache, BoxesOfAFrameAreMadeReusedOrTriangles) {
     EXPECT_TRUE(without.engine().cache_boxes().empty());
 }
 
+/// How much pictures are predicted to take in the end, over the table's price, where a clock shows a share of what is predicted.
+double learnt_from(double share) {
+    const test::PictureWalkOptions how{.viewport = {1280, 720}};  // small pictures are not timed
+    PictureWalk timed(test::forest_model(), how), untimed(test::forest_model(), how);
+    test::ScriptedClock clock{.share = share};
+    double by_clock_us = 0, by_table_us = 0;
+    for (int i = 0; i < 60; ++i) {
+        Pose pose = along(timed.engine(), i / 2);
+        pose.position.z += 4 * timed.engine().model().nodes[0].box.half().z;
+        const SubmitReport of_table = untimed.frame(pose), report = timed.frame(pose, test::ample_us, test::ample_us, &clock);
+        if (i < 50) continue;
+        by_clock_us += report.pictures_us / std::max(1U, report.pictures);
+        by_table_us += of_table.pictures_us / std::max(1U, of_table.pictures);
+    }
+    return by_clock_us / by_table_us;
+}
+
+/// A frame's correction is of all of it. Pictures that are dearer or cheaper than the table says are found by themselves.
+TEST(PictureCache, PicturesAreTimedByThemselves) {
+    EXPECT_NEAR(learnt_from(1), 1, 0.3);  // the end of a slice is in it
+    EXPECT_LT(learnt_from(0.5), 0.8);
+    EXPECT_GT(learnt_from(2), 1.6);
+}
+
+/// Drivers may wait for new pictures where a frame begins. They are in flight no more then, and no slice is drawn coarser.
+TEST(PictureCache, WhatBeginningTookIsNotWaitedForTwice) {
+    PictureWalk plain(test::forest_model(), {}), waits(test::forest_model(), {});
+    int frames = 0;
+    for (int i = 0; i < 12; ++i) {
+        const Pose pose = along(plain.engine(), i);
+        const SubmitReport report = plain.frame(pose);
+        test::ScriptedClock clock{.begins_us = report.captures_us};
+        frames += report.captures_us > 0.2 * report.predicted_us ? 1 : 0;
+        EXPECT_EQ(waits.frame(pose, test::ample_us, 1.25 * report.predicted_us, &clock).downgraded_slices, 0U) << i;
+    }
+    EXPECT_GT(frames, 0);
+}
+
 TEST(PictureCache, FramesAllocateNothing) {
     PictureWalk walk(test::forest_model(), {});
     std::uint32_t made = 0;

@@ -24,6 +24,20 @@ struct PictureWalkOptions {
     bool all_round = false;
 };
 
+/// A clock that runs at a share of what the null device charges, and is late once, after its first call: while a frame begins.
+struct ScriptedClock {
+    double share = 0;
+    double begins_us = 0;
+    gl::Device* device = nullptr;
+    int calls = 0;
+    static std::int64_t now_ns(void* context) {
+        auto& clock = *static_cast<ScriptedClock*>(context);
+        clock.device->draws.plays();
+        const double us = clock.share * clock.device->charged_us() + (clock.calls++ > 0 ? clock.begins_us : 0.0);
+        return static_cast<std::int64_t>(1e3 * us);
+    }
+};
+
 /// Prepares each frame's set from what the frame before knew, as the virtual clock of a walk does.
 class PictureWalk {
 public:
@@ -58,9 +72,10 @@ public:
         return count;
     }
 
-    SubmitReport frame(const Pose& pose, double budget_us = ample_us, double limit_us = ample_us) {
+    SubmitReport frame(const Pose& pose, double budget_us = ample_us, double limit_us = ample_us,
+                       ScriptedClock* clock = nullptr) {
         prepare(pose);
-        return draw(pose, budget_us, limit_us);
+        return draw(pose, budget_us, limit_us, clock);
     }
     /// The set of a frame at this pose, as it was expected from the frames before.
     void prepare(const Pose& pose) {
@@ -68,15 +83,23 @@ public:
         before_ = jumps ? pose : pose_;
         engine_->prepare(predict_region(before_, before_, 1.0 / 30, 0.1), frames_++, 1.4, 0, set_, hints_);
     }
-    SubmitReport draw(const Pose& pose, double budget_us, double limit_us) {
+    SubmitReport draw(const Pose& pose, double budget_us, double limit_us, ScriptedClock* clock = nullptr) {
         engine_->device().draws.plays();
         hints_.covered = engine_->cover(pose, predict_region(before_, pose, 1.0 / 30, 0.1));
         pose_ = pose;
         known_ = true;
         engine_->select(set_, budget_us, {}, 0);
         constexpr std::int64_t frame_ns = 33'333'333;
-        return engine_->submit(
-            pose, {.elapsed_us = 0, .limit_us = limit_us, .frame_ns = static_cast<std::int64_t>(frames_) * frame_ns});
+        SubmitLimits limits;
+        limits.limit_us = limit_us;
+        limits.frame_ns = static_cast<std::int64_t>(frames_) * frame_ns;
+        if (clock != nullptr) {
+            clock->device = &engine_->device();
+            clock->calls = 0;
+            limits.now_ns = ScriptedClock::now_ns;
+            limits.now_context = clock;
+        }
+        return engine_->submit(pose, limits);
     }
 
 private:
