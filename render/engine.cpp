@@ -382,8 +382,8 @@ void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> ite
     device.hide_effects(impl_->hidden);
     impl_->make_pictures_anew(pose, pictures);
     impl_->draw_items(pose, items, resolution);
-    if (!impl_->shown_pictures.empty()) {
-        device.draw_pictures(impl_->shown_pictures);
+    if (!impl_->anew.empty()) {
+        device.draw_pictures(impl_->anew);
         device.end_slice();
     }
     device.end_items();

@@ -209,6 +209,8 @@ public:
     [[nodiscard]] std::span<const gl::CachePicture> pictures() const;
     /// The same, so that the frame may be drawn again later.
     [[nodiscard]] std::span<const ShownPicture> shown_pictures() const;
+    /// Leaves of the model that lie in a box of the image cache, or reach into it.
+    [[nodiscard]] std::span<const model::Index> leaves_in(std::uint32_t box) const;
     /// Maximum number of pictures in a frame.
     [[nodiscard]] std::size_t picture_capacity() const;
     /// What it did with each box of the cache; empty without one.

@@ -20,8 +20,10 @@ constexpr double may_turn_rad = 0.1;   // while a picture lives, beyond what the
 constexpr double all_round_rad = std::numbers::pi;
 constexpr double jump_m = 2;             // in a frame: no course leads there
 constexpr double unlimited_share = 0.1;  // of the budget, for new pictures where nothing limits what a frame spends
-constexpr double limited_share = 0.25;   // the same where forms compete with them
-constexpr double max_share = 1.0 / 16;   // of the budget, for one picture: what a slice may take
+constexpr double limited_share = 0.25;   // the same where forms compete with them, for two seconds after a jump
+constexpr double steady_share = 0.09;    // and later: what they take is within a tenth of the period
+constexpr std::int64_t refill_ns = 2'000'000'000;
+constexpr double max_share = 1.0 / 16;  // of the budget, for one picture: what a slice may take
 constexpr double usual_budget_us = 33'333;
 constexpr double value_share = 1e-5;             // of the picture: of what saves time that nothing else can use
 constexpr double min_rate_share = 1e-7;          // of the picture, a us: the least that time is worth beside what is shown more
@@ -30,6 +32,7 @@ constexpr std::size_t uncovered_chunk = 32;
 constexpr std::uint32_t timed_every = 8;  // frames with pictures
 constexpr double min_timed_us = 200;      // by the table; less says nothing
 constexpr double learnt_share = 0.25, min_picture_factor = 0.25, max_picture_factor = 4;
+constexpr double min_sample = 0.05;  // of the prediction; in less nothing was drawn
 
 double us_of(const model::FrameCombine& combine, const model::ItemCost& cost) {
     return static_cast<double>(combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us);
@@ -99,6 +102,7 @@ void Engine::Impl::make_pictures() {
         picture_items.push_back({n, model.nodes[n].first_rep + model.nodes[n].rep_count - 1});
     shown_pictures.reserve(pictures.boxes().size());
     shown_boxes.reserve(pictures.boxes().size());
+    anew.reserve(pictures.boxes().size());
     made_boxes.reserve(pictures.boxes().size());
     frame_boxes.resize(pictures.boxes().size());
     uncovered.reserve(model.nodes.size());
@@ -123,6 +127,7 @@ const model::CoverBits& Engine::cover(const Pose& now, const prepare::Region& ne
     e.course.step_m = jumps ? dvec3(0) : step;
     e.course.radius_m = off_course_m;
     e.course_known = true;
+    e.jumped = e.jumped || jumps;
     // Eyes on the way to the region's middle, and as far beyond it.
     const double way_m = glm::length(next.centre.position - now.position) + off_course_m;
     e.turn_rad = e.options.pictures_all_round ? all_round_rad : next.angle_rad;
@@ -167,7 +172,11 @@ void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const selec
     view.view_px = 1.0 * viewport.width * viewport.height;
     view.combine = combine();
     const double budget_us = std::isfinite(input.budget_us) ? input.budget_us : usual_budget_us;
-    view.max_price_us = max_share * budget_us;
+    // Forms compete with them, and what they take is as wrong as what forms take.
+    const bool refills = jumped || jumped_ns < 0 || frame_ns - jumped_ns < refill_ns;
+    const double limited_us = (refills ? limited_share : steady_share) * budget_us / std::max(1.0, correction.factor);
+    double left_us = by_budget ? limited_us : unlimited_share * budget_us;
+    view.max_price_us = std::min(max_share * budget_us, left_us);
     const auto room_us = static_cast<float>(select::Budget(input).room_us());
     const float a_ms = by_budget ? set.curve.value_at(room_us + 1000.0F) - set.curve.value_at(room_us) : 0.0F;
     const double rate = std::max(1e-3 * static_cast<double>(a_ms), value_share * set.full_value / usual_budget_us);
@@ -175,7 +184,6 @@ void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const selec
     view.picture_factor = picture_factor;
     view.us_per_value = by_budget && buying > 0 ? 1 / buying : 0.0;
     const std::span<const cache::CacheOffer> plan_of_pictures = pictures.plan(view);
-    double left_us = (by_budget ? limited_share : unlimited_share) * budget_us;
     for (const cache::CacheOffer& offer : plan_of_pictures) {
         if (static_cast<double>(offer.price_us) > left_us) continue;
         const auto worth_of = static_cast<float>(std::max(rate * static_cast<double>(offer.gain_us), 1e-9));
@@ -343,14 +351,17 @@ void Engine::Impl::draw_uncovered(const SubmitLimits& limits, double start_us, m
     }
 }
 
-/// Over those of the walk, which are forgotten. As many as a frame takes are captured by a frame of their own.
+/// Over those of the walk, which are forgotten; those that the last frame showed are there. As many as a frame takes are captured
+/// by a frame of their own.
 void Engine::Impl::make_pictures_anew(const Pose& pose, std::span<const ShownPicture> shown) {
     device->draws.plays();
-    shown_pictures.clear();
-    if (shown.empty() || !pictures.any()) return;
+    anew.clear();
+    if (!pictures.any()) return;
+    const std::size_t count = std::min(shown.size(), anew.capacity());
+    for (const ShownPicture& each : shown.first(count)) anew.push_back(each.picture);
+    if (anew.empty() || shown.data() == shown_boxes.data()) return;
     pictures.clear();
-    for (std::size_t i = 0; i < std::min(shown.size(), shown_pictures.capacity()); ++i) {
-        shown_pictures.push_back(shown[i].picture);
+    for (std::size_t i = 0; i < count; ++i) {
         if (i > 0 && i % gl::max_captures == 0) {
             draw_items(pose, {}, 1);
             device->end_items();
@@ -368,6 +379,11 @@ std::span<const gl::CachePicture> Engine::pictures() const {
 std::span<const ShownPicture> Engine::shown_pictures() const {
     impl_->draws.plays();
     return impl_->rest_picture.samples() > 0 ? std::span<const ShownPicture>() : impl_->shown_boxes;
+}
+
+std::span<const model::Index> Engine::leaves_in(std::uint32_t box) const {
+    impl_->draws.plays();
+    return impl_->pictures.boxes().leaves(box);
 }
 
 std::size_t Engine::picture_capacity() const {
@@ -395,18 +411,21 @@ std::vector<std::uint8_t> Engine::birds_eye(std::span<const cache::FrameBox> fra
 void Engine::Impl::draw_pictures(const SubmitLimits& limits, SubmitReport& report) {
     if (shown_pictures.empty()) return;
     device->draws.plays();
-    const bool timed =
-        limits.now_ns != nullptr && report.pictures_us > picture_factor * min_timed_us && ++picture_frames % timed_every == 0;
-    if (timed) device->wait_slices(0);
+    const double table_us = report.pictures_us / picture_factor;
+    const bool timed = limits.now_ns != nullptr && table_us > min_timed_us && ++picture_frames % timed_every == 0;
+    if (timed) {
+        device->end_slice();  // there may be none, and what clears the picture is before it
+        device->wait_slices(0);
+    }
     const double from_us = now_us(limits);
-    device->charge_us(report.pictures_us);
+    device->charge_us(table_us);
     device->draw_pictures(shown_pictures);
     device->end_slice();
     device->wait_slices(timed ? 0 : 1);
     ++report.slices;
     if (!timed) return;
-    const double sample = picture_factor * (now_us(limits) - from_us) / (report.pictures_us * correction.factor);
-    if (std::isfinite(sample))
+    const double sample = (now_us(limits) - from_us) / (table_us * correction.factor);
+    if (std::isfinite(sample) && sample > min_sample)
         picture_factor += learnt_share * (std::clamp(sample, min_picture_factor, max_picture_factor) - picture_factor);
 }
 

@@ -81,6 +81,10 @@ struct Engine::Impl {
     bool shadow_shown GUARDED_BY(draws) = false;       ///< by the last picture
     bool shadow_unbudgeted GUARDED_BY(draws) = false;  ///< draw_unbudgeted() is to show it
     bool course_known GUARDED_BY(draws) = false;
+    bool jumped GUARDED_BY(draws) = false;  ///< since the last submit()
+    /// Of the last submit(), and of the one after the last jump; below 0: unknown.
+    std::int64_t frame_ns GUARDED_BY(draws) = -1, jumped_ns GUARDED_BY(draws) = -1;
+    double begun_us GUARDED_BY(draws) = 0;                     ///< by the clock, that beginning the frame took
     bool rests GUARDED_BY(draws) = false;                      ///< the last submit() was at rest
     model::EffectMask pictures_without GUARDED_BY(draws) = 0;  ///< effects that the pictures were drawn without
     static constexpr std::uint32_t shadow_item = 0;            ///< the refresh that it is
@@ -88,6 +92,7 @@ struct Engine::Impl {
     std::vector<gl::DrawItem> picture_items;  ///< full detail of what lies in each box, as in SceneBoxes::nodes()
     std::string picture_reason;               ///< why there are none
     std::vector<gl::CachePicture> shown_pictures GUARDED_BY(draws);
+    std::vector<gl::CachePicture> anew GUARDED_BY(draws);     ///< of draw_unbudgeted()
     std::vector<ShownPicture> shown_boxes GUARDED_BY(draws);  ///< the same, with their boxes
     std::vector<cache::Index> made_boxes GUARDED_BY(draws);   ///< that got a picture in this frame
     std::vector<cache::FrameBox> frame_boxes GUARDED_BY(draws);

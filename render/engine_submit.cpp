@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "render/drawn_items.hpp"
 #include "render/engine_impl.hpp"
@@ -137,9 +138,8 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     }
     bool full = true;
     // New pictures change the target, where some drivers wait until they are drawn. So what beginning took is of them.
-    const double begun_us = limits.now_ns != nullptr ? (now_us(limits) - start_us) / correction.factor : 0.0;
-    float in_flight_us = 0,
-          unfinished_us = before_us(report.shadow_refreshed) + static_cast<float>(std::max(0.0, report.captures_us - begun_us));
+    float in_flight_us = 0, unfinished_us = before_us(report.shadow_refreshed) +
+                                            static_cast<float>(std::max(0.0, report.captures_us - begun_us / correction.factor));
     if (beside_us() > 0.0) device->charge_us(beside_us());
     const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
     for (const select::Slice& slice : plan.slices) {
@@ -243,6 +243,7 @@ bool Engine::Impl::submit_rest(const Pose& pose, const SubmitLimits& limits, Sub
     if (still) {
         report = last_report;
         report.pictures_made = report.uncovered_items = 0;
+        report.pictures_reused = report.pictures;
         report.pictures_us = report.captures_us = 0;
         const RestScene scene{model,
                               preparer->item_costs(),
@@ -268,6 +269,8 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.device->draws.plays();
     CHECK(e.use_last || e.prepared != nullptr, "A submitted frame was selected before");
     SubmitReport report;
+    e.frame_ns = limits.frame_ns;
+    if (std::exchange(e.jumped, false)) e.jumped_ns = e.frame_ns;
     e.rests = e.submit_rest(pose, limits, report);
     if (e.rests) return report;
     const double start_us = e.now_us(limits);
@@ -282,7 +285,9 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.device->set_filter(e.filtered && !e.use_last ? e.best_filter : e.device->filter());
     if (e.lever.count > 0) e.device->hide_effects(e.hidden | e.lever.left_out);
     e.begin_shadow(pose, report);
+    const double begins_us = e.now_us(limits);
     e.device->begin_frame(pose, e.drawn_resolution);
+    e.begun_us = limits.now_ns != nullptr ? e.now_us(limits) - begins_us : 0.0;
     if (e.use_last) {
         e.submit_last(pose, limits, start_us, report);
     } else {

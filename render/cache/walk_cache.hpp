@@ -176,11 +176,11 @@ private:
     std::uint64_t forgot_frame_ = 0;           ///< of the last forget()
     double forget_frames_ = 0;                 ///< usually between two of them; 0: none was
     model::CoverBits covered_;
-    /// By box, of full detail, and what the cut's forms lacked of it: of the last cut, and of the last cut that drew the box.
+    /// Full detail of a box, and what the cut's forms lacked of it.
     struct Value {
         float full = 0, missing = 0;
     };
-    std::vector<Value> shown_value_, value_;
+    std::vector<Value> shown_value_, value_;  ///< by box: of the last cut; of the last cut that drew it
     model::CoverBits set_;                    ///< of the last cut
     std::vector<float> across_us_;            ///< by box: of what lies across its children, to go only with all of them
     std::vector<float> cost_us_, saving_us_;  ///< by box: of the last cut; what a picture would save in a frame

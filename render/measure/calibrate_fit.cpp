@@ -267,7 +267,7 @@ bool price_pictures(const PictureTimes& times, const model::Viewport& picture, m
     constexpr double large_area = 1.0 * PictureTimes::large_texels * PictureTimes::large_texels;
     const double texel_ns = 1e3 * (large_us - small_us) / (large_area - small_area);
     const double capture_us = small_us - 1e-3 * std::max(0.0, texel_ns) * small_area;
-    if (!std::isfinite(pixel_ns) || !std::isfinite(texel_ns)) return false;
+    if (!(pixel_ns > 0) || !(capture_us > 0) || !std::isfinite(one_us) || !std::isfinite(texel_ns)) return false;
     costs.picture_us = static_cast<float>(std::clamp(one_us, min_picture_us, max_picture_us));
     costs.picture_ns_per_pixel = static_cast<float>(std::clamp(pixel_ns, min_picture_ns, max_ns_per_pixel));
     costs.capture_us = static_cast<float>(std::clamp(capture_us, min_picture_us, max_picture_us));

@@ -66,8 +66,8 @@ struct PictureTimes {
     static constexpr int count = 64, wide = 60, fills = 4, captures = 16;
     static constexpr std::uint32_t small_texels = 64, large_texels = 256;
 };
-/// Prices of pictures: by their medians. Nothing is free, since noise must not make it so. False: a time is not finite or there
-/// are none, and `costs` is as before.
+/// Prices of pictures: by their medians. Nothing is free, since noise must not make it so. False: a time is not finite, there are
+/// none, or pixels and new pictures took no time. `costs` is as before then.
 bool price_pictures(const PictureTimes& times, const model::Viewport& picture, model::CostModel& costs);
 
 /// The same work drawn in two ways, one right after the other.

@@ -62,7 +62,10 @@ ItemCost CostModel::item(float triangles, float pixels, const CostGrid& grid) co
 
 const CostGrid& CostModel::grid_for(EffectMask effects) const {
     // What light all of them share, normals above all, is the sun's. What each adds is its price.
-    constexpr EffectMask baked = effect_openness | effect_shadow | effect_lamps;
+    EffectMask baked = effect_openness | effect_shadow | effect_lamps;
+    const bool priced =
+        std::any_of(prices.begin(), prices.end(), [](const EffectPrice& p) { return p.effect == effect_lit_picture; });
+    if (!priced) baked |= effect_lit_picture;  // bakes and older tables: pictures read no normals, but their light is not free
     if ((effects & baked) != 0) effects = (effects & ~baked) | effect_sun;
     const CostGrid* best = &grids.front();
     int best_rank = -1000;

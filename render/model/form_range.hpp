@@ -23,8 +23,8 @@ bool legal(const Representation& rep, float nearest_m);
 /// Infinite: nowhere. Without max_error_rad: where it is legal.
 double valid_from_m(const Representation& rep, double max_error_rad = std::numeric_limits<double>::infinity());
 
-/// The same as a range of eyes: beyond a sphere round the middle of the node's box. No eye is in it wrongly; some beside the
-/// box's faces are left out. All directions: no form of the bake depends on one.
+/// The same as a range of eyes: beyond a sphere round the middle of the node's box. No eye is in it wrongly, but for rounding;
+/// some beside the box's faces are left out. All directions: no form of the bake depends on one.
 ConicRange form_range(const Node& node, const Representation& rep,
                       double max_error_rad = std::numeric_limits<double>::infinity());
 

@@ -149,7 +149,7 @@ TEST(StudyPictures, OfChairsUnderATableAreRightByBoxAndWrongByObject) {
     EXPECT_GT(by_object->wrong, 50U) << "plates and fruit behind the picture of the table";
 }
 
-TEST(StudyPictures, OnMeshesStandWithinAPixelAndAreChosenWhereTheyAreCheaper) {
+TEST(StudyPictures, OnMeshesStandWithinAPixelAndSoDoTheCheaperOnes) {
     CheckRequest request = narrow_view();
     request.kind = PictureKind::mesh;
     const auto scene = make_study("room", 600);

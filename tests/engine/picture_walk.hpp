@@ -24,7 +24,7 @@ struct PictureWalkOptions {
     bool all_round = false;
 };
 
-/// A clock that runs at a share of what the null device charges, and is late once, after its first call: while a frame begins.
+/// A clock that runs at a share of what the null device charges, and is late once, after its second call: while a frame begins.
 struct ScriptedClock {
     double share = 0;
     double begins_us = 0;
@@ -33,7 +33,7 @@ struct ScriptedClock {
     static std::int64_t now_ns(void* context) {
         auto& clock = *static_cast<ScriptedClock*>(context);
         clock.device->draws.plays();
-        const double us = clock.share * clock.device->charged_us() + (clock.calls++ > 0 ? clock.begins_us : 0.0);
+        const double us = clock.share * clock.device->charged_us() + (clock.calls++ > 1 ? clock.begins_us : 0.0);
         return static_cast<std::int64_t>(1e3 * us);
     }
 };

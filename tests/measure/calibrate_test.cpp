@@ -203,7 +203,9 @@ TEST(PicturePrices, are_those_of_the_usual_frame) {
 TEST(PicturePrices, are_never_free_and_need_times) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     model::CostModel costs;
-    ASSERT_TRUE(measure::price_pictures({{-1}, {-1}, {-1}, {-2}}, {1000, 200}, costs));
+    EXPECT_FALSE(measure::price_pictures({{-1}, {-64}, {-1}, {-2}}, {1000, 200}, costs)) << "nothing was drawn";
+    EXPECT_FALSE(costs.pictures_measured);
+    ASSERT_TRUE(measure::price_pictures({{-1}, {900}, {20}, {10}}, {1000, 200}, costs));
     for (const float price : {costs.picture_us, costs.picture_ns_per_pixel, costs.capture_us, costs.capture_ns_per_texel})
         EXPECT_GT(price, 0);
     const measure::PictureTimes good = times_of_pictures();

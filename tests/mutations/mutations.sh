@@ -16,7 +16,7 @@ mutation N17d render/gl/gl_draw.cpp 's/gl_.Enable\(GL_DEPTH_TEST\);/gl_.Disable(
 mutation N9a render/model/view.cpp 's/below = below && step <= 0;/below = below;/' "no face separates if an edge ray comes back"
 mutation N9b render/model/view.cpp 's/return !\(large && separated_across_edges.*?;/return true;/' "edges across edges, of large boxes"
 mutation N10 render/model/view.cpp 's/std::isnan\(pose.fov_y_rad\) \? Pose\{\}.fov_y_rad : pose.fov_y_rad/pose.fov_y_rad/' "a field of view that is no number"
-mutation N11a render/prepare/evaluate.cpp 's/return std::max\(nearest_m, near_m\);/return nearest_m;/' "distances clamped at the near plane"
+mutation N11a render/model/form_range.cpp 's/return std::max\(nearest_m, static_cast<float>\(near_plane_m\)\);/return nearest_m;/' "distances clamped at the near plane"
 mutation N11b render/model/view.cpp 's/below = below && step <= 0;/below = below;/' "no face separates if an edge ray comes back"
 sides='s/std::atan\(at.half_x \+ at.middle_x\)/std::atan(at.half_x)/'
 mutation A1 render/model/view.cpp "$sides" "each side of a shifted picture at its own angle"

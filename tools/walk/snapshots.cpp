@@ -16,7 +16,8 @@
 namespace surefoot::walk {
 
 std::size_t snapshots_that_fit(const SnapshotRoom& room, bool with_last) {
-    const std::size_t frame_bytes = room.items * sizeof(gl::DrawItem) + room.pictures * sizeof(ShownPicture);
+    const std::size_t frame_bytes =
+        room.items * sizeof(gl::DrawItem) + room.pictures * (sizeof(ShownPicture) + sizeof(cache::FrameBox));
     return std::max<std::size_t>(1, snapshot_memory_bytes / (sizeof(FrameSnapshot) + (with_last ? 2 : 1) * frame_bytes));
 }
 
@@ -90,21 +91,51 @@ void SnapshotStore::remember_last(rt::TextureFilter filter, std::span<const gl::
     last.insert(last.end(), culled.begin(), culled.end());
 }
 
-std::vector<gl::DrawItem> last_cut_at(const model::Model& model, const FrameSnapshot& snapshot) {
-    enum : std::uint8_t { nothing, above_shown, shown };  // what a node is in the last cut
-    std::vector<std::uint8_t> state(model.nodes.size(), nothing);
+namespace {
+
+/// What a node is in the last cut.
+enum class InLastCut : std::uint8_t { nothing, above_shown, shown };
+
+std::vector<InLastCut> last_cut_of(const model::Model& model, const FrameSnapshot& snapshot) {
+    std::vector<InLastCut> state(model.nodes.size(), InLastCut::nothing);
     for (const gl::DrawItem& item : snapshot.last_items) {
-        state[item.node] = shown;
-        for (model::Index n = model.nodes[item.node].parent; n != model::none && state[n] == nothing; n = model.nodes[n].parent)
-            state[n] = above_shown;
+        state[item.node] = InLastCut::shown;
+        for (model::Index n = model.nodes[item.node].parent; n != model::none && state[n] == InLastCut::nothing;
+             n = model.nodes[n].parent)
+            state[n] = InLastCut::above_shown;
     }
+    return state;
+}
+
+bool is_in(const model::Model& model, const std::vector<InLastCut>& state, model::Index node) {
+    bool covered = state[node] != InLastCut::nothing;
+    for (model::Index n = node; n != model::none && !covered; n = model.nodes[n].parent) covered = state[n] == InLastCut::shown;
+    return covered;
+}
+
+}  // namespace
+
+std::vector<gl::DrawItem> last_cut_at(const model::Model& model, const FrameSnapshot& snapshot) {
+    const std::vector<InLastCut> state = last_cut_of(model, snapshot);
     std::vector<gl::DrawItem> items = snapshot.last_items;
-    for (const gl::DrawItem& item : snapshot.items) {
-        bool covered = state[item.node] != nothing;
-        for (model::Index n = item.node; n != model::none && !covered; n = model.nodes[n].parent) covered = state[n] == shown;
-        if (!covered) items.push_back(item);
-    }
+    for (const gl::DrawItem& item : snapshot.items)
+        if (!is_in(model, state, item.node)) items.push_back(item);
     return items;
+}
+
+std::vector<ShownPicture> last_pictures_at(const Engine& engine, const FrameSnapshot& snapshot) {
+    const std::vector<InLastCut> state = last_cut_of(engine.model(), snapshot);
+    std::vector<ShownPicture> pictures;  // back to front, as the snapshot's are
+    for (const ShownPicture& each : snapshot.pictures) {
+        const auto last = std::find_if(snapshot.last_pictures.begin(), snapshot.last_pictures.end(),
+                                       [&](const ShownPicture& other) { return other.box == each.box; });
+        const std::span<const model::Index> leaves = engine.leaves_in(each.box);
+        const bool drawn =
+            std::any_of(leaves.begin(), leaves.end(), [&](model::Index n) { return is_in(engine.model(), state, n); });
+        if (last == snapshot.last_pictures.end() && !drawn) pictures.push_back(each);
+    }
+    pictures.insert(pictures.end(), snapshot.last_pictures.begin(), snapshot.last_pictures.end());
+    return pictures;
 }
 
 namespace {
@@ -181,9 +212,10 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     engine.draw_unbudgeted(snapshot.pose, full);
     auto reference = engine.device().read_pixels();
     if (!reference) return reference.error();
-    if (!snapshot.last_items.empty()) {
+    if (!snapshot.last_items.empty() || !snapshot.last_pictures.empty()) {
         engine.hide_effects(left_out);
-        draw_as_in(engine, snapshot, last_cut_at(engine.model(), snapshot), snapshot.last_filter, snapshot.last_pictures);
+        draw_as_in(engine, snapshot, last_cut_at(engine.model(), snapshot), snapshot.last_filter,
+                   last_pictures_at(engine, snapshot));
         auto before = engine.device().read_pixels();
         if (!before) return before.error();
         out.pops_compared = true;

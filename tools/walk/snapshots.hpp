@@ -31,7 +31,7 @@ struct FrameSnapshot {
     std::vector<ShownPicture> pictures, last_pictures;  ///< of the image cache, in both frames
 };
 
-/// Memory limit of all snapshots of a walk, in bytes. 512 of them on the largest models.
+/// Memory limit of all snapshots of a walk, in bytes.
 constexpr std::size_t snapshot_memory_bytes = 256U << 20U;
 /// Most items and pictures of the image cache in a frame.
 struct SnapshotRoom {
@@ -73,8 +73,11 @@ private:
 /// them: they are no pop. Allocates.
 std::vector<gl::DrawItem> last_cut_at(const model::Model& model, const FrameSnapshot& snapshot);
 
-/// Draws items and pictures at the resolution and with the filter of a snapshot, in the light, at the time and without the
-/// effects that were set. If its frame showed shadows of what moves, they are drawn anew for its moment: the frame's own may be
+/// The pictures of the image cache beside those items: of boxes that only came into view, those of the snapshot. Allocates.
+std::vector<ShownPicture> last_pictures_at(const Engine& engine, const FrameSnapshot& snapshot);
+
+/// Draws items and pictures at the resolution and with the filter of a snapshot. Light, time and hidden effects are those that
+/// were set. If its frame showed shadows of what moves, they are drawn anew for its moment: the frame's own may be
 /// MovingShadow::max_off_px beside.
 void draw_as_in(Engine& engine, const FrameSnapshot& snapshot, std::span<const gl::DrawItem> items, rt::TextureFilter filter,
                 std::span<const ShownPicture> pictures = {});

@@ -78,7 +78,7 @@ void WalkStages::inject_submit(rt::FrameRecord& record) const {
 /// Real work for the rasterisers, for as long as the fault wants it.
 void WalkStages::inject_raster(const rt::FrameRecord& record, std::int64_t begun_ns) {
     while (inject(FramePhase::raster, record) == Fault::draw_again) {
-        engine_.draw_unbudgeted(now_.pose, engine_.drawn());
+        engine_.draw_unbudgeted(now_.pose, engine_.drawn(), engine_.shown_pictures(), 1, rt::TextureFilter::automatic);
         report_.finished_us = static_cast<double>(clock_.now_ns() - begun_ns) * 1e-3;
     }
 }

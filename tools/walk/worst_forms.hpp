@@ -36,7 +36,7 @@ public:
     /// At most `count`, the one that costs most first; none that costs nothing. pictures: as add() had them.
     [[nodiscard]] std::vector<report::WorstForm> list(std::size_t count, std::span<const report::ReportSnapshot> pictures) const;
 
-    static constexpr std::size_t forms_tried = 12;  ///< a snapshot; each is a frame to draw
+    static constexpr std::size_t forms_tried = 12;  ///< a snapshot; each is a frame to draw, with new pictures
 
 private:
     struct Total {
