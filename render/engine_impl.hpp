@@ -189,7 +189,7 @@ struct Engine::Impl {
     void draw_uncovered(const SubmitLimits& limits, double start_us, model::ItemCost& so_far, SubmitReport& report)
         REQUIRES(draws);
     void draw_pictures(const SubmitLimits& limits, SubmitReport& report) REQUIRES(draws);
-    [[nodiscard]] std::span<const gl::DrawItem> contents_of(cache::Index box) const {
+    [[nodiscard]] std::span<const gl::DrawItem> contents_of(cache::Index box) const REQUIRES(draws) {
         return std::span(picture_items).subspan(pictures.boxes().first_node(box), pictures.boxes().nodes(box).size());
     }
     void make_pictures_anew(const Pose& pose, std::span<const ShownPicture> shown) REQUIRES(draws);

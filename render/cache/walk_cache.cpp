@@ -231,7 +231,8 @@ bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) con
 void WalkCache::refresh_facts(const PlanView& view) {
     std::uint32_t left = options_.surround ? options_.prospects - options_.prospects / 4 : options_.prospects;
     work_out_facts(view, next_fact_, left, true);
-    if (options_.surround) work_out_facts(view, next_beside_, left += options_.prospects / 4, false);
+    left += options_.prospects / 4;
+    if (options_.surround) work_out_facts(view, next_beside_, left, false);
 }
 
 void WalkCache::work_out_facts(const PlanView& view, Index& next, std::uint32_t& left, bool in_view) {

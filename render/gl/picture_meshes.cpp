@@ -158,8 +158,9 @@ void GlDevice::issue_meshes(std::size_t first) {
     if (used_mesh_indices_ == first) return;
     ++stats_.batches;
     ++stats_.draws;
-    gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(used_mesh_indices_ - first), GL_UNSIGNED_INT,
-                     reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));
+    // The API takes an offset in a buffer as a pointer.  NOLINTNEXTLINE(performance-no-int-to-ptr)
+    const auto offset = reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * sizeof(std::uint32_t));
+    gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(used_mesh_indices_ - first), GL_UNSIGNED_INT, offset);
 }
 
 /// Into every target.

@@ -158,7 +158,10 @@ double meshing_us(cache::DepthMesher& mesher, const std::vector<float>& depths, 
 void print_meshes(Bench& bench, gl::Device& device, const Layers& made, int rounds) {
     BenchMesh pixels, grid;
     for (int i = 0; i < layers; ++i) pixels.add(dvec2(-30), 60, 20.0 - i, 256);
-    for (int i = 0; i < 5000; ++i) grid.add(dvec2(-10 + 0.2 * (i % 100), -5 + 0.2 * (i / 100)), 0.15, 15, 1);
+    for (int i = 0; i < 5000; ++i) {
+        const int column = i % 100, row = i / 100;
+        grid.add(dvec2(-10 + 0.2 * column, -5 + 0.2 * row), 0.15, 15, 1);
+    }
     const gl::CachePicture picture = full_picture(256);
     const auto draw = [&](const BenchMesh& mesh, const char* what, double of) {
         const gl::PictureMesh shown{picture.place, dvec3(0), mesh.corners, mesh.indices};

@@ -27,10 +27,11 @@ struct DepthPicture {
         for (int y = 0; y < side; ++y)
             for (int x = 0; x < side; ++x) at(x, y) = depth(x, y);
     }
-    float& at(int x, int y) { return depths[static_cast<std::size_t>(y * side + x)]; }
-    [[nodiscard]] float at(int x, int y) const {
-        return x >= 0 && y >= 0 && x < side && y < side ? depths[static_cast<std::size_t>(y * side + x)] : 0.0F;
+    [[nodiscard]] std::size_t place(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
     }
+    float& at(int x, int y) { return depths[place(x, y)]; }
+    [[nodiscard]] float at(int x, int y) const { return x >= 0 && y >= 0 && x < side && y < side ? depths[place(x, y)] : 0.0F; }
     [[nodiscard]] bool covered(int x, int y) const { return at(x, y) > 0 && std::isfinite(at(x, y)); }
     [[nodiscard]] int count() const {
         int covered_texels = 0;

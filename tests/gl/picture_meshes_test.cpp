@@ -101,7 +101,7 @@ TEST(PictureMeshes, have_the_depths_of_what_was_captured) {
                     const dvec2 off = glm::abs(ray * depth - middle);
                     return std::max(off.x, off.y) < half;
                 };
-                const float depth = depths[static_cast<std::size_t>(64 * y + x)];
+                const float depth = depths[std::size_t{64} * static_cast<std::size_t>(y) + static_cast<std::size_t>(x)];
                 if (inside(dvec2(0.2, 0), 0.1, 5.5)) {
                     ASSERT_NEAR(1 / depth, 5.5F, 1e-4F);
                     ++near;
