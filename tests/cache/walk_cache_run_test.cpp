@@ -141,6 +141,7 @@ private:
         const ViewPixels pixels = view_pixels(pose, viewport);
         const CacheDraws& draws = cache_.draws(set, pixels, seen);
         shown_.assign(slots_.size(), 0);
+        in_view_.assign(slots_.size(), false);
         for (const Index box : draws.boxes) {
             const HeldPicture& held = cache_.held(box);
             if (!held.any() || !valid_around(held.picture, eye_, 0, pixels.smallest_rad(held.box))) return false;
@@ -150,9 +151,12 @@ private:
         for (const Index box : draws.unserved) ++shown_[box];
         const std::vector<CacheBox>& boxes = cache_.boxes().tree().boxes;
         for (Index i = 1; i < boxes.size(); ++i) shown_[i] += shown_[boxes[i].parent];
+        // A large box is tested across edges too. So a small one in it may count as visible that is not.
+        for (Index i = 0; i < boxes.size(); ++i)
+            in_view_[i] = (i == 0 || in_view_[boxes[i].parent]) && model::visible(seen, cache_.boxes().filled(i));
         for (Index i = 0; i < boxes.size(); ++i) {
             if (boxes[i].child_count > 0 || !set[i] || !cache_.boxes().has_contents(i)) continue;
-            const int expected = model::visible(seen, cache_.boxes().filled(i)) ? 1 : 0;
+            const int expected = in_view_[i] ? 1 : 0;
             if (shown_[i] < expected || shown_[i] > 1) return false;
         }
         return true;
@@ -165,6 +169,7 @@ private:
     std::vector<Slot> slots_;  ///< by box, as last seen
     std::vector<Index> changed_;
     std::vector<int> shown_;
+    std::vector<bool> in_view_;
     std::array<model::CoverBits, 3> sets_;
     dvec3 eye_{-20, 60, 60}, step_m_{0.05, 0, 0};
     double heading_rad_ = -1.5, turn_rad_ = 0;
