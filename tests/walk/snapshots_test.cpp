@@ -7,8 +7,11 @@
 #include <set>
 #include <utility>
 
+#include "render/model/walk_file.hpp"
 #include "tests/engine/moving_frame.hpp"
 #include "tests/engine/moving_lawn.hpp"
+#include "tests/engine/picture_walk.hpp"
+#include "tests/walk/walk_fixture.hpp"
 
 namespace surefoot {
 namespace {
@@ -83,6 +86,45 @@ TEST(Snapshots, WhatCameIntoViewIsNoPop) {
     EXPECT_EQ(last_cut({{1, 2}}, {{3, 8}, {4, 9}}), (Pairs{{1, 2}})) << "their ancestor was shown";
     EXPECT_EQ(last_cut({{3, 7}, {4, 9}}, {{1, 2}}), (Pairs{{3, 7}, {4, 9}})) << "its descendants were shown";
     EXPECT_EQ(last_cut({{0, 0}}, {{2, 5}, {3, 8}}), (Pairs{{0, 0}}));
+}
+
+std::vector<std::uint32_t> boxes_of(const std::vector<ShownPicture>& pictures) {
+    std::vector<std::uint32_t> boxes;
+    for (const ShownPicture& each : pictures) boxes.push_back(each.box);
+    return boxes;
+}
+
+/// A picture of now belongs to the frame before only where that frame showed nothing of its box: then it is no pop.
+TEST(Snapshots, APictureOfWhatCameIntoViewIsNoPop) {
+    const auto forest = model::read_walk(test::Forest::get().model_file);
+    ASSERT_TRUE(forest.ok());
+    test::PictureWalk walk(*forest, {});
+    const Engine& engine = walk.engine();
+    const Box& box = engine.model().nodes[0].box;
+    for (int i = 0; i < 12; ++i) {  // along the edge, looking in
+        Pose pose;
+        pose.position = box.centre() + dvec3(0.05 * i, 2, 0.8 * box.half().z);
+        walk.frame(pose);
+    }
+    ASSERT_GT(engine.shown_pictures().size(), 1U);
+    const ShownPicture near = engine.shown_pictures().back(), far = engine.shown_pictures().front();
+    ASSERT_FALSE(engine.leaves_in(near.box).empty());
+    ShownPicture older = near;
+    older.picture.eye.x -= 1;
+
+    walk::FrameSnapshot snapshot;
+    snapshot.pictures = {far, near};
+    EXPECT_EQ(boxes_of(last_pictures_at(engine, snapshot)), (std::vector{far.box, near.box})) << "nothing was shown";
+    snapshot.last_pictures = {older};
+    const std::vector<ShownPicture> both = last_pictures_at(engine, snapshot);
+    ASSERT_EQ(boxes_of(both), (std::vector{far.box, near.box}));
+    EXPECT_EQ(both.back().picture.eye, older.picture.eye) << "as the frame before showed it";
+    snapshot.last_items = {{engine.leaves_in(far.box).front(), 0}};
+    EXPECT_EQ(boxes_of(last_pictures_at(engine, snapshot)), (std::vector{near.box})) << "its forms were shown";
+    snapshot.last_items = {{0, 0}};
+    EXPECT_EQ(boxes_of(last_pictures_at(engine, snapshot)), (std::vector{near.box})) << "and here those of all";
+    snapshot.last_pictures.clear();
+    EXPECT_TRUE(last_pictures_at(engine, snapshot).empty());
 }
 
 TEST(Snapshots, ShowShadowsOfWhatMovesIfTheirFrameDid) {
