@@ -45,6 +45,10 @@ double life_of(const Picture& picture, const EyeCourse& course, double max_rad) 
     return lives;
 }
 
+double grown_for(const Box& box, const dvec3& eye, double max_rad) {
+    return max_rad * (glm::length(box.centre() - eye) + 0.5 * box.diagonal());
+}
+
 std::optional<Prospect> prospect_of(const Box& box, const EyeCourse& course, double max_rad) {
     if (!(max_rad > 0)) return std::nullopt;
     // Most boxes are too near: their sides say so before anything is worked out.
@@ -54,7 +58,7 @@ std::optional<Prospect> prospect_of(const Box& box, const EyeCourse& course, dou
     const double widest = std::max({box.half().x, box.half().y, box.half().z});
     if (widest > max_rad * sides.back() * (distance + half)) return std::nullopt;
     Prospect found;
-    found.grown_m = max_rad * (distance + half);
+    found.grown_m = grown_for(box, course.eye, max_rad);
     found.box = {box.min - dvec3(found.grown_m), box.max + dvec3(found.grown_m)};
     const auto from_here = picture_of(found.box, course.eye);
     if (!from_here) return std::nullopt;

@@ -29,6 +29,9 @@ struct Prospect {
 /// max_rad: of error and texels. Nothing where no picture of 64, 128 or 256 texels is fine enough, or none is valid now.
 std::optional<Prospect> prospect_of(const Box& box, const EyeCourse& course, double max_rad);
 
+/// By how much a prospect's box is grown at each face: an angle of max_rad at its far depth.
+double grown_for(const Box& box, const dvec3& eye, double max_rad);
+
 /// How many frames on the course a picture stays valid: 0 to max_frames. Below 0: it is not valid now.
 double life_of(const Picture& picture, const EyeCourse& course, double max_rad);
 

@@ -10,13 +10,16 @@ namespace surefoot::cache {
 
 namespace {
 
-constexpr float min_saving_us = 5;          // less is not worth a picture
-constexpr double same_change_frames = 2;    // what is forgotten again so soon was forgotten for one reason
-constexpr double min_life_frames = 4;       // for less, nothing is offered
-constexpr std::uint64_t tight_frames = 16;  // after room was missing, only what finds room is offered
-constexpr double rounded_down = 1 - 1e-6;   // errors are reported in float
-constexpr float new_share = 0.5F;           // of a cost that was measured anew
-constexpr float share_alone = 0.5F;         // of what lies across several boxes, for each by itself
+constexpr float min_saving_us = 5;              // less is not worth a picture
+constexpr double same_change_frames = 2;        // what is forgotten again so soon was forgotten for one reason
+constexpr double min_life_frames = 4;           // for less, nothing is offered
+constexpr std::uint64_t tight_frames = 16;      // after room was missing, only what finds room is offered
+constexpr double rounded_down = 1 - 1e-6;       // errors are reported in float
+constexpr float new_share = 0.5F;               // of a cost that was measured anew
+constexpr float share_alone = 0.5F;             // of what lies across several boxes, for each by itself
+constexpr float dearer = 1.1F;                  // than when a picture was last worked out: then it is worked out again at once
+constexpr std::uint64_t view_first_frames = 8;  // after a picture was offered in view
+constexpr std::size_t max_tries = 64;           // candidates that are worked out in a frame
 
 }  // namespace
 
@@ -41,13 +44,16 @@ WalkCache::WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vec
     victims_.reserve(count);
     trial_ = slots_;
     relies_.resize(count, false);
+    serves_.resize(count, false);
+    in_view_.resize(count, false);
+    refused_.reserve(max_refused);
+    out_until_.resize(count, 0);
+    cell_worth_us_.resize(std::size_t{options.layers} * cells_a_side * cells_a_side);
     draws_.boxes.reserve(count);
     draws_.unserved.reserve(count);
     if (!options.surround) return;
     known_from_.resize(count, dvec3(std::numeric_limits<double>::quiet_NaN()));
     seen_now_.resize(count, false);
-    in_view_.resize(count, false);
-    cell_worth_us_.resize(std::size_t{options.layers} * cells_a_side * cells_a_side);
 }
 
 void WalkCache::forget() {
@@ -55,6 +61,7 @@ void WalkCache::forget() {
         HeldPicture& held = held_[i];
         if (held.any() && held.until == 0 && !is_pending(i)) held.until = frame_ + relied_frames;
     }
+    for (Pending& pending : pending_) pending.before = {};
     const auto since = static_cast<double>(frame_ - forgot_frame_);
     if (since <= same_change_frames) return;
     forget_frames_ = forget_frames_ > 0 ? std::min(since, 0.5 * (forget_frames_ + since)) : since;
@@ -76,13 +83,27 @@ double WalkCache::allowed_rad(Index box, const Box& seen, const ViewPixels& pixe
     return std::min(pixel_rad, rounded_down * promise_rad_ / importance);
 }
 
-bool WalkCache::is_pending(Index box) const { return std::find(pending_.begin(), pending_.end(), box) != pending_.end(); }
-
-void WalkCache::drop_pending() {
-    while (!pending_.empty()) drop(pending_.back());
+bool WalkCache::is_pending(Index box) const {
+    return std::any_of(pending_.begin(), pending_.end(), [&](const Pending& pending) { return pending.box == box; });
 }
 
-void WalkCache::captured(Index box) { pending_.erase(std::remove(pending_.begin(), pending_.end(), box), pending_.end()); }
+/// A box whose slot still holds its picture of before keeps that one.
+void WalkCache::drop_pending() {
+    while (!pending_.empty()) {
+        const Pending last = pending_.back();
+        if (last.before.any()) {
+            held_[last.box] = last.before;
+            pending_.pop_back();
+        } else {
+            drop(last.box);
+        }
+    }
+}
+
+void WalkCache::captured(Index box) {
+    pending_.erase(std::remove_if(pending_.begin(), pending_.end(), [&](const Pending& pending) { return pending.box == box; }),
+                   pending_.end());
+}
 
 void WalkCache::drop(Index box) {
     slots_.give(held_[box].slot);
@@ -210,12 +231,21 @@ float WalkCache::us_of(const model::FrameCombine& combine, const model::ItemCost
     return combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us;
 }
 
+/// By the pixel of the box as it will be captured. Else a picture could be too coarse as soon as it is there.
+double WalkCache::allowed_for_new_rad(Index box, const PlanView& view) const {
+    const Box& filled = boxes_.filled(box);
+    const double rad = allowed_rad(box, filled, view.pixels);
+    const double grown_m = grown_for(filled, view.course.eye, rad);
+    if (!std::isfinite(grown_m)) return rad;
+    return std::min(rad, allowed_rad(box, {filled.min - dvec3(grown_m), filled.max + dvec3(grown_m)}, view.pixels));
+}
+
 /// A new picture of the box, where it pays. False: it does not.
 bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) const {
     const float saves_us = full_worth_us(box, view.us_per_value) - draw_us(box, view);
     if (!(saves_us > min_saving_us)) return false;
     if (before_blended(boxes_.filled(box))) return false;
-    const auto prospect = prospect_of(boxes_.filled(box), view.course, allowed_rad(box, boxes_.filled(box), view.pixels));
+    const auto prospect = prospect_of(boxes_.filled(box), view.course, allowed_for_new_rad(box, view));
     if (!prospect) return false;
     offer.box = box;
     offer.prospect = *prospect;
@@ -227,11 +257,27 @@ bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) con
     return offer.gain_us >= static_cast<float>(options_.pays) * offer.price_us;
 }
 
-/// A few boxes a frame, in turns. With a surround, most of them in view: they are found first after a jump.
+/// While the picture of before lives on, a new one brings nothing.
+bool WalkCache::pays_beside_held(CacheOffer& offer, const PlanView& view) const {
+    const HeldPicture& held = held_[offer.box];
+    if (!held.any() || held.until != 0) return true;
+    const double left = life_of(held.picture, view.course, allowed_rad(offer.box, held.box, view.pixels));
+    if (!(left > 0)) return true;
+    offer.gain_us *= static_cast<float>(std::max(0.0, 1 - left / std::max(1.0, offer.prospect.life_frames)));
+    return offer.gain_us >= static_cast<float>(options_.pays) * offer.price_us;
+}
+
+/// A few boxes a frame, in turns; before them those in view that cost more than they did. With a surround, most of them in view:
+/// they are found first after a jump.
 void WalkCache::refresh_facts(const PlanView& view) {
-    std::uint32_t left = options_.surround ? options_.prospects - options_.prospects / 4 : options_.prospects;
+    const std::uint32_t quarter = options_.prospects / 4;
+    std::uint32_t left = quarter;
+    for (Index i = 0; i < boxes_.size() && left > 0; ++i)
+        if (in_view_[i] && full_worth_us(i, view.us_per_value) > dearer * facts_[i].worth_us)
+            left -= work_out_fact(i, view) ? 1 : 0;
+    left += options_.prospects - (options_.surround ? 2 : 1) * quarter;
     work_out_facts(view, next_fact_, left, true);
-    left += options_.prospects / 4;
+    left += quarter;
     if (options_.surround) work_out_facts(view, next_beside_, left, false);
 }
 
@@ -239,16 +285,19 @@ void WalkCache::work_out_facts(const PlanView& view, Index& next, std::uint32_t&
     for (Index tested = 0; tested < boxes_.size() && left > 0; ++tested) {
         const Index i = next;
         next = i + 1 < boxes_.size() ? i + 1 : 0;
-        if (options_.surround && in_view_[i] != in_view) continue;
-        facts_[i] = {};
-        estimate(i, view);
-        if (!boxes_.may_have_picture(i) || !(full_worth_us(i, view.us_per_value) > min_saving_us)) continue;
-        if (!options_.surround && !model::visible(*view.frustum, boxes_.filled(i))) continue;
-        --left;
-        CacheOffer offer;
-        if (!work_out(i, view, offer)) continue;
-        facts_[i].net_us = (offer.gain_us - offer.price_us) / static_cast<float>(std::max(1.0, offer.prospect.life_frames));
+        if (in_view_[i] == in_view && work_out_fact(i, view)) --left;
     }
+}
+
+/// False: that took no time.
+bool WalkCache::work_out_fact(Index i, const PlanView& view) {
+    estimate(i, view);
+    facts_[i] = {0, full_worth_us(i, view.us_per_value)};
+    if (!boxes_.may_have_picture(i) || !(facts_[i].worth_us > min_saving_us)) return false;
+    CacheOffer offer;
+    if (work_out(i, view, offer))
+        facts_[i].net_us = (offer.gain_us - offer.price_us) / static_cast<float>(std::max(1.0, offer.prospect.life_frames));
+    return true;
 }
 
 /// Whether its picture serves now and for a while.
@@ -262,22 +311,45 @@ bool WalkCache::serves_on(Index box, const PlanView& view) const {
 }
 
 /// Of a picture that serves for a while: all that it saves, since it is paid for. Else what a new one would bring.
-float WalkCache::own_net_us(Index box, const PlanView& view) const {
+float WalkCache::own_net_us(Index box, const PlanView& view) {
+    serves_[box] = false;
     if (!(facts_[box].net_us > 0.0F) && !held_[box].any()) return 0;
-    if (!options_.surround && !model::visible(*view.frustum, boxes_.filled(box))) return 0;
-    if (!serves_on(box, view)) return facts_[box].net_us;
+    if (!options_.surround && !in_view_[box]) return 0;
+    serves_[box] = serves_on(box, view);
+    if (!serves_[box]) return facts_[box].net_us;
     return std::max(facts_[box].net_us, full_worth_us(box, view.us_per_value) - draw_us(box, view));
 }
 
-void WalkCache::choose(Index i, const PlanView& view) {
+/// A picture that serves is drawn, whatever its children could have.
+void WalkCache::choose(Index i) {
     const CacheBox& box = boxes_.tree().boxes[i];
-    if (!(best_us_[i] > 0.0F)) return;
+    if (!(best_us_[i] > 0.0F) || serves_[i]) return;
     if (own_us_[i] < best_us_[i]) {
-        for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) choose(child, view);
+        for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) choose(child);
         return;
     }
-    if (serves_on(i, view)) return;
-    candidates_.push_back({i, own_us_[i], !options_.surround || in_view_[i]});
+    if (frame_ < out_until_[i]) return;
+    candidates_.push_back({i, own_us_[i], static_cast<bool>(in_view_[i])});
+}
+
+/// The best come first. While pictures are made in view, the rest has a share alone.
+void WalkCache::offer_candidates(const PlanView& view) {
+    std::size_t beside = frame_ < view_first_until_ ? options_.max_offers / 4 : options_.max_offers;
+    for (const Candidate& candidate : std::span(candidates_).first(std::min(candidates_.size(), max_tries))) {
+        if (offers_.size() == options_.max_offers) break;
+        if (!candidate.in_view && beside == 0) continue;
+        CacheOffer offer;
+        if (!work_out(candidate.box, view, offer) || !pays_beside_held(offer, view)) continue;
+        if (takes_place_of_waiting(candidate, offer.prospect.picture.texels)) continue;
+        if (frame_ < tight_until_ && !find_room(candidate.box, offer.prospect.picture.texels)) continue;
+        if (candidate.in_view) {
+            view_first_until_ = frame_ + view_first_frames;
+        } else {
+            offer.gain_us *= share_out_of_view;
+            --beside;
+        }
+        offers_.push_back(offer);
+    }
 }
 
 std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
@@ -299,29 +371,26 @@ std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
         own_us_[i] = own_net_us(i, view);
         float below = 0;
         for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) below += best_us_[child];
-        best_us_[i] = std::max(own_us_[i], below);
+        best_us_[i] = serves_[i] ? own_us_[i] : std::max(own_us_[i], below);
     }
-    choose(0, view);
+    choose(0);
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
         if (a.in_view != b.in_view) return a.in_view;
         return a.net_us != b.net_us ? a.net_us > b.net_us : a.box < b.box;
     });
-    for (const Candidate& candidate : candidates_) {
-        if (offers_.size() == options_.max_offers) break;
-        CacheOffer offer;
-        if (!work_out(candidate.box, view, offer)) continue;
-        if (frame_ < tight_until_ && !find_room(candidate.box, offer.prospect.picture.texels)) continue;
-        if (!candidate.in_view) offer.gain_us *= share_out_of_view;
-        offers_.push_back(offer);
-    }
+    offer_candidates(view);
     return offers_;
 }
 
 /// The box's own slot goes first, then the longest unused of those that no set relies on. False: there is no room; nothing is
 /// changed.
 bool WalkCache::find_room(Index box, std::uint32_t texels) {
-    if (no_room_for_ != 0 && texels >= no_room_for_ && held_[box].slot.texels < texels) return false;
     victims_.clear();
+    if (held_[box].slot.texels == texels) return true;
+    if (no_room_for_ != 0 && texels >= no_room_for_ && held_[box].slot.texels < texels) {
+        refuse(box, texels);
+        return false;
+    }
     trial_ = slots_;  // of the same size: nothing allocates
     trial_.give(held_[box].slot);
     if (trial_.take(texels)) return true;
@@ -337,20 +406,24 @@ bool WalkCache::find_room(Index box, std::uint32_t texels) {
         return true;
     }
     no_room_for_ = texels;
-    if (!options_.surround) return false;
     tight_until_ = frame_ + tight_frames;
-    if (refused_.texels == 0) refused_ = {texels, worth_us(box, own_us_[box])};
+    refuse(box, texels);
     return false;
 }
 
 bool WalkCache::take(const CacheOffer& offer) {
     const std::uint32_t texels = offer.prospect.picture.texels;
     if (!any() || pending_.size() == pending_.capacity() || !find_room(offer.box, texels)) return false;
-    drop(offer.box);
-    for (const Index victim : victims_) drop(victim);
-    held_[offer.box] = {offer.prospect.picture, offer.prospect.box, offer.prospect.grown_m, slots_.take(texels).value_or(Slot{})};
+    HeldPicture before = held_[offer.box];
+    if (before.slot.texels != texels) {
+        drop(offer.box);
+        for (const Index victim : victims_) drop(victim);
+        before = {};
+    }
+    const Slot slot = before.any() ? before.slot : slots_.take(texels).value_or(Slot{});
+    held_[offer.box] = {offer.prospect.picture, offer.prospect.box, offer.prospect.grown_m, slot};
     last_covered_[offer.box] = frame_;  // so that it is not dropped before a set may use it
-    pending_.push_back(offer.box);
+    pending_.push_back({offer.box, before.until == 0 ? before : HeldPicture{}});
     return true;
 }
 

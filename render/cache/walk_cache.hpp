@@ -122,11 +122,13 @@ public:
 private:
     static constexpr std::uint64_t relied_frames = 3;  ///< after which no set relies on what was covered
     static constexpr float share_out_of_view = 0.25F;  ///< of a saving: so large a part of all directions is seen at once
+    static constexpr std::size_t max_refused = 8;
     static constexpr std::uint32_t cells_a_side = layer_texels / min_slot_texels;
 
     /// What a new picture of a box would bring, as it was worked out a few frames ago.
     struct Fact {
-        float net_us = 0;  ///< a frame; 0: no picture, or none that pays
+        float net_us = 0;    ///< a frame; 0: no picture, or none that pays
+        float worth_us = 0;  ///< of the picture in a frame, from which this was worked out
     };
     /// A sphere as an eye sees it.
     struct Cone {
@@ -143,17 +145,27 @@ private:
     };
     /// A picture for which there was no room.
     struct Refused {
-        std::uint32_t texels = 0;  ///< of a side; 0: none was refused
+        Index box = 0;
+        std::uint32_t texels = 0;  ///< of a side
         float worth_us = 0;
+        std::uint64_t until = 0;  ///< frame after which its place is free; 0: it has none yet
+    };
+    /// A new picture that is not captured yet.
+    struct Pending {
+        Index box = 0;
+        HeldPicture before;  ///< which its slot still holds; none where it has another slot
     };
     [[nodiscard]] float draw_us(Index box, const PlanView& view) const;
     [[nodiscard]] float full_worth_us(Index box, double us_per_value) const;
     [[nodiscard]] bool work_out(Index box, const PlanView& view, CacheOffer& offer) const;
+    [[nodiscard]] bool pays_beside_held(CacheOffer& offer, const PlanView& view) const;
     void refresh_facts(const PlanView& view);
+    bool work_out_fact(Index box, const PlanView& view);
     void work_out_facts(const PlanView& view, Index& next, std::uint32_t& left, bool in_view);
-    [[nodiscard]] float own_net_us(Index box, const PlanView& view) const;
+    [[nodiscard]] float own_net_us(Index box, const PlanView& view);
     [[nodiscard]] Index common_box(Index a, Index b) const;
-    void choose(Index box, const PlanView& view);
+    void choose(Index box);
+    void offer_candidates(const PlanView& view);
     void draw_below(Index box, const ViewPixels& pixels, const model::Frustum& frustum);
     [[nodiscard]] bool serves_on(Index box, const PlanView& view) const;
     [[nodiscard]] bool find_room(Index box, std::uint32_t texels);
@@ -164,8 +176,16 @@ private:
     [[nodiscard]] static float us_of(const model::FrameCombine& combine, const model::ItemCost& cost);
     [[nodiscard]] bool measured(Index box);
     void estimate(Index box, const PlanView& view);
+    [[nodiscard]] double allowed_for_new_rad(Index box, const PlanView& view) const;
+    void refuse(Index box, std::uint32_t texels);
     void make_room_by_worth();
-    [[nodiscard]] float worth_us(Index box, float net_us) const;
+    [[nodiscard]] bool takes_place_of_waiting(const Candidate& candidate, std::uint32_t texels) const;
+    void sum_up_worth(std::uint32_t side);
+    [[nodiscard]] Slot place_for(const Refused& refused) const;
+    [[nodiscard]] bool shown_by_larger(Index box) const;
+    [[nodiscard]] static std::size_t cell_of(std::uint32_t layer, std::uint32_t row, std::uint32_t column) {
+        return (std::size_t{layer} * cells_a_side + row) * cells_a_side + column;
+    }
 
     SceneBoxes boxes_;
     WalkCacheOptions options_;
@@ -193,11 +213,18 @@ private:
     dvec3 cones_eye_{0.0};
     std::vector<Candidate> candidates_;
     std::vector<CacheOffer> offers_;
-    std::vector<Index> pending_;
+    std::vector<Pending> pending_;
     std::vector<Index> victims_;     ///< of take(): what would go for room
     Slots trial_;                    ///< of take()
     std::uint32_t no_room_for_ = 0;  ///< texels of a side, since plan(); 0: nothing failed
+    std::vector<bool> serves_;       ///< by box: of the last plan()
+    std::vector<bool> in_view_;      ///< the same
     std::vector<bool> relies_;       ///< by box: a set needs something below it
+    std::vector<Refused> refused_;
+    std::uint64_t tight_until_ = 0;         ///< the frame until which offers must find room
+    std::uint64_t no_place_until_ = 0;      ///< the same: nothing was worth less than what was refused
+    std::vector<std::uint64_t> out_until_;  ///< by box: it went for another; no picture of it is offered before this frame
+    std::vector<float> cell_worth_us_;      ///< by square of 64 texels
 
     // With a surround alone.
     model::Frustum seen_;                  ///< of the last plan()
@@ -205,13 +232,10 @@ private:
     bool planned_ = false;                 ///< since the last end_costs()
     std::vector<dvec3> known_from_;        ///< by box: the eye for which its cost was measured; NaN: it was not
     std::vector<bool> seen_now_;           ///< by box: measured by the last cut
-    std::vector<bool> in_view_;            ///< by box: of the last plan()
+    std::uint64_t view_first_until_ = 0;   ///< the frame until which boxes out of view have a share alone
     Index next_beside_ = 0;                ///< as next_fact_, of boxes out of view
     double known_us_ = 0, priced_us_ = 0;  ///< of boxes in view, since facts began anew: by the cut, by the cost table
     float spent_share_ = 1;                ///< of the cost table's price, that cuts spend
-    Refused refused_;                      ///< since the last cover(), the first
-    std::uint64_t tight_until_ = 0;        ///< the frame until which offers must find room
-    std::vector<float> cell_worth_us_;     ///< by square of 64 texels
     CacheDraws draws_;
 };
 

@@ -1,5 +1,6 @@
-# Reads the ledger of a walk with jumps, and prints a JSON object: how long making pictures of the image cache took, as predicted, outside
-# of the two seconds after a jump and within them. A jump is a step of over 2 m. A control's frames do not count: the walk stands still there.
+# Reads the ledger of a walk with jumps, and prints a JSON object: how long making pictures of the image cache took, as predicted
+# and corrected, outside of the two seconds after a jump and within them. A jump is a step of over 2 m. A control's frames do not
+# count: the walk stands still there.
 # awk -v period_ms=33.333 -f refreshes.awk LEDGER.csv
 
 BEGIN { FS = ","; after_jump = 2000 / period_ms }
@@ -9,7 +10,7 @@ $at["control"] == 1 { next }
   step = frames++ == 0 ? 1e9 : sqrt(($at["x"] - x) ^ 2 + ($at["y"] - y) ^ 2 + ($at["z"] - z) ^ 2)
   x = $at["x"]; y = $at["y"]; z = $at["z"]
   if (step > 2) { since = 0; if (frames > 1) ++jumps }
-  us = $at["captures_us"] + 0
+  us = $at["captures_us"] * $at["correction"]
   made += $at["pictures_made"]
   if (since++ >= after_jump) { outside[++outsides] = us; next }
   ++within

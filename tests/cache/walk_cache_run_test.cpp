@@ -17,6 +17,7 @@ namespace {
 
 constexpr double side_m = 120;
 constexpr model::Viewport viewport{320, 240};
+constexpr double off_course_m = 0.03;
 
 /// 512 leaves in a cube; every 64th is flat, and every 64th has no size at all.
 model::Model cube_of_leaves() {
@@ -48,25 +49,32 @@ public:
     [[nodiscard]] std::uint64_t hash() const { return hash_; }
     [[nodiscard]] std::uint64_t pictures_drawn() const { return pictures_drawn_; }
 
+    /// The eye stays, and all that is bought is captured.
+    bool stand() {
+        step_m_ = dvec3(0);
+        turn_rad_ = 0;
+        return frame(true);
+    }
+
     /// False: something is not as it should be.
-    bool frame() {
-        move();
+    bool frame(bool stands = false) {
+        if (!stands) move();
         const Pose pose = this->pose();
         const model::Frustum seen = model::make_frustum(pose, viewport, 1e4, 0.3, 0.2);
-        sets_[frames_ % sets_.size()] = cache_.cover(view_pixels(pose, viewport, 0.2), 0.2);
+        sets_[frames_ % sets_.size()] = cache_.cover(view_pixels(pose, viewport, 0.2), stands ? off_course_m : 0.2);
         if (!in_step()) return false;
-        if (random_.below(300) == 0) cache_.forget();
+        if (!stands && random_.below(300) == 0) cache_.forget();
         PlanView view;
-        view.course = {eye_, step_m_, 0.03, 90};
+        view.course = {eye_, step_m_, off_course_m, 90};
         view.pixels = view_pixels(pose, viewport, 0.3);
         view.frustum = &seen;
         view.pixel_rad = model::pixel_angle(pose, viewport);
         view.view_px = 1.0 * viewport.width * viewport.height;
         view.max_price_us = 1e9;
         for (const CacheOffer& offer : cache_.plan(view)) {
-            if (random_.below(16) == 0 || !cache_.take(offer)) continue;
+            if ((!stands && random_.below(16) == 0) || !cache_.take(offer)) continue;
             if (!in_step()) return false;
-            if (random_.below(16) == 0) continue;  // it waits, and is dropped
+            if (!stands && random_.below(16) == 0) continue;  // it waits, and is dropped
             cache_.captured(offer.box);
             ++refreshes_;
             hash_ = hash_ * 1099511628211U + offer.box * 8U + offer.prospect.picture.texels / 64;
@@ -193,6 +201,22 @@ TEST(WalkCacheRun, ThousandsOfRefreshesLeaveNothingBehind) {
 
 TEST(WalkCacheRunAtNight, AMillionRefreshesLeaveNothingBehind) {
     for (const bool surround : {false, true}) expect_exact(500'000, surround, 24);
+}
+
+/// In a full cache too, and where pictures that are worth little hold the places.
+TEST(WalkCacheRun, WhereTheEyeStaysNoPictureIsMadeTwice) {
+    for (const bool surround : {false, true}) {
+        for (const std::uint32_t layers : {2U, 6U, 24U}) {
+            CacheRun run(7, surround, layers);
+            for (int place = 0; place < 4; ++place) {
+                for (int i = 0; i < 40; ++i) ASSERT_TRUE(run.frame()) << i;
+                for (int i = 0; i < 150; ++i) ASSERT_TRUE(run.stand()) << i;
+                const std::uint64_t made = run.refreshes();
+                for (int i = 0; i < 50; ++i) ASSERT_TRUE(run.stand()) << i;
+                EXPECT_EQ(run.refreshes(), made) << surround << " " << layers << " " << place;
+            }
+        }
+    }
 }
 
 TEST(WalkCacheRun, TheSameWalkMakesTheSamePictures) {

@@ -55,6 +55,29 @@ TEST_F(WalkCacheRoom, APictureIsRenewedInItsOwnPlace) {
     EXPECT_TRUE(take(2, 64));
 }
 
+/// A frame may end without having made what it took, as the first one at rest does.
+TEST_F(WalkCacheRoom, APictureStaysWhereTheNewOneIsNotMade) {
+    ASSERT_TRUE(take(1, 128));
+    CacheOffer offer = offer_of(1, 128);
+    offer.prospect.picture.plane_m = 7;
+    ASSERT_TRUE(cache_.take(offer));
+    EXPECT_TRUE(cache_.is_pending(1));
+    EXPECT_EQ(cache_.held(1).picture.plane_m, 7);
+    cache_.drop_pending();
+    EXPECT_TRUE(cache_.held(1).any());
+    EXPECT_NE(cache_.held(1).picture.plane_m, 7) << "its place holds the old one";
+    EXPECT_FALSE(cache_.is_pending(1));
+    ASSERT_TRUE(cache_.take(offer));
+    cache_.forget();
+    cache_.drop_pending();
+    EXPECT_FALSE(cache_.held(1).any()) << "the old one is of another light";
+    ASSERT_TRUE(take(2, 128));
+    ASSERT_TRUE(cache_.take(offer_of(2, 64)));
+    cache_.drop_pending();
+    EXPECT_FALSE(cache_.held(2).any()) << "another may have its place";
+    EXPECT_EQ(cache_.bytes(), 0U);
+}
+
 TEST_F(WalkCacheRoom, NothingGoesForAPictureThatHasNoRoom) {
     ASSERT_TRUE(take(1, 64));
     pass_frames(4);

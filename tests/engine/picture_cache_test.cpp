@@ -135,22 +135,26 @@ TEST(PictureCache, NoPictureIsMadeWhereTheLightChangesBeforeItPays) {
     EXPECT_GT(made, 0U) << "the light stays";
 }
 
-/// The price of what pictures cannot show any more is over the frame's limit: the frame is one without a prepared set.
+/// The price of what pictures cannot show any more, beside what was bought, is over the frame's limit: the frame is one without
+/// a prepared set.
 TEST(PictureCache, TooMuchInPlaceOfPicturesIsDrawnAsWithoutASet) {
-    PictureWalk walk(test::forest_model(), {});
-    Pose pose;
-    for (int i = 0; i < 20; ++i) walk.frame(pose = along(walk.engine(), i));
-    pose.position.x += 25;
-    walk.engine().device().draws.plays();
-    const auto submit = [&](double limit_us) {
+    const auto after_jump = [](double limit_us) {
+        PictureWalk walk(test::forest_model(), {});
+        Pose pose;
+        for (int i = 0; i < 8; ++i) walk.frame(pose = along(walk.engine(), i));
+        pose.position.x += 25;
+        walk.engine().device().draws.plays();
         walk.engine().select(walk.set(), test::ample_us, {}, 0);
         return walk.engine().submit(pose, {.elapsed_us = 0, .limit_us = limit_us});
     };
-    const double all_us = submit(test::ample_us).predicted_us;
+    const SubmitReport all = after_jump(test::ample_us);
+    const double all_us = all.predicted_us;
+    EXPECT_GT(all.captures_us, 0) << "something was bought";
     for (const double share : {0.3, 0.35, 0.4}) {
-        const SubmitReport report = submit(share * all_us);
+        const SubmitReport report = after_jump(share * all_us);
         EXPECT_GT(report.uncovered_items, 0U);
         EXPECT_LE(report.predicted_us, share * all_us) << share;
+        EXPECT_EQ(report.captures_us, 0) << share;
     }
 }
 

@@ -88,6 +88,39 @@ TEST(PictureSurround, ATurnMakesNothingAnew) {
     EXPECT_GT(of_view.made, 10U);
 }
 
+/// Where there is no room for all of them, those that are worth the most stay, wherever the eye turns.
+TEST(PictureSurround, ATurnMakesNothingAnewInAFullCache) {
+    PictureWalk walk(ring_of_balls(), {.layers = 1, .all_round = true});
+    Pose pose;
+    pose.position = dvec3(0.3, 0.2, 0.4);
+    fill(walk, pose);
+    const std::uint64_t full = 4U * 256 * 256;
+    Turn turn;
+    for (int i = 0; i < 3; ++i) turn = turn_round(walk, pose);
+    EXPECT_EQ(turn.made, 0U);
+    EXPECT_GT(turn.frames_with_pictures, turn_frames / 4);
+    EXPECT_EQ(walk.frame(pose, period_us).picture_bytes, full) << "else this says nothing";
+}
+
+/// Pictures of what was seen before are valid still. They go for those of what is seen now.
+TEST(PictureSurround, AfterATurnAFullCacheShowsWhatIsInView) {
+    const test::PictureWalkOptions small{.layers = 3};
+    PictureWalk turned_walk(test::forest_model(), small), fresh(test::forest_model(), small);
+    const Pose pose = in_the_forest(fresh.engine()), behind = turned(pose, std::numbers::pi);
+    fill(turned_walk, pose);
+    for (int i = 1; i <= 60; ++i) turned_walk.frame(turned(pose, std::numbers::pi * i / 60), period_us);
+    for (int i = 0; i < 150; ++i) {  // a full cache changes little by little: no pause says that it is done
+        turned_walk.frame(behind, period_us);
+        fresh.frame(behind, period_us);
+    }
+    const SubmitReport now = turned_walk.frame(behind, period_us), as_fresh = fresh.frame(behind, period_us);
+    EXPECT_GT(as_fresh.pictures, 5U);
+    EXPECT_GT(as_fresh.picture_bytes, 2U * 4 * 256 * 256) << "else this says nothing";
+    EXPECT_GE(now.pictures + 2, as_fresh.pictures);
+    EXPECT_LT(static_cast<double>(now.triangles), 1.05 * static_cast<double>(as_fresh.triangles));
+    EXPECT_TRUE(holes(turned_walk.engine(), behind).empty());
+}
+
 /// Within two seconds of a jump the cache shows what it will show. What is in view comes before the rest.
 TEST(PictureSurround, AJumpFillsTheCacheAgainWithinTwoSeconds) {
     for (const bool all_round : {false, true}) {

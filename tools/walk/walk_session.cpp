@@ -104,7 +104,7 @@ void follow_display(Session& s) {
 }
 
 /// Of the image cache, 256 KiB each.
-constexpr std::uint32_t cache_layers = 128;
+constexpr std::uint32_t cache_layers = 256;
 
 /// `others`: cores beside the frame thread's. `called_for`: the model's effects.
 Result<EngineOptions> engine_options(const WalkRequest& r, int others, model::EffectMask called_for) {
