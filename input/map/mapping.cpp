@@ -10,7 +10,7 @@ namespace surefoot::input {
 
 namespace {
 
-constexpr std::array<std::string_view, action_count> names = {
+constexpr std::array<std::string_view, action_count> names_of_actions = {
     "none", "forward", "side",     "up",      "turn",  "look", "speed",    "zoom", "next_viewpoint", "reset",
     "tour", "pause",   "sunlight", "shadows", "lamps", "fog",  "dead_man", "stop", "stop_reset"};
 
@@ -23,8 +23,8 @@ bool contains_letters(std::string_view text, std::string_view part) {
 
 }  // namespace
 
-std::span<const std::string_view> action_names() { return names; }
-std::string_view name_of(Action action) { return names[static_cast<std::size_t>(action)]; }
+std::span<const std::string_view> action_names() { return names_of_actions; }
+std::string_view name_of(Action action) { return names_of_actions[static_cast<std::size_t>(action)]; }
 
 std::string ControlRef::text() const {
     const std::string what = name.empty() ? fmt::format("0x{:02x}:0x{:02x}", usage_page, usage) : fmt::format("'{}'", name);

@@ -136,10 +136,10 @@ private:
 
     /// The meshes of another scene as one; its materials and images are added to this one.
     Mesh adopt(Scene&& from, const std::string& name) {
-        std::vector<Placed> all;
+        std::vector<Placed> placed;
         for (const Node& node : from.nodes)
-            if (node.mesh != none) all.push_back({node.mesh, node.world});
-        Mesh one = joined(from, all, name);
+            if (node.mesh != none) placed.push_back({node.mesh, node.world});
+        Mesh one = joined(from, placed, name);
         from.nodes.clear();
         from.stand_ins.clear();
         from.meshes.clear();

@@ -259,8 +259,8 @@ TEST(Rest, AMovementShowsInTheSameFrameWhatAWalkWithoutRestShows) {
         Walk without = open(gl::BackendKind::egl, 0);
         Pose pose = test::forest_pose(*with.engine);
         with.engine->device().bind();
-        int frames = 0;
-        for (SubmitReport report; !report.at_rest || report.rest_samples < until; ++frames) report = with.frame(pose);
+        int shown = 0;
+        for (SubmitReport report; !report.at_rest || report.rest_samples < until; ++shown) report = with.frame(pose);
         std::vector<std::vector<std::uint8_t>> moved;
         for (int i = 0; i < 5; ++i) {
             pose.position.x += 0.05;
@@ -269,7 +269,7 @@ TEST(Rest, AMovementShowsInTheSameFrameWhatAWalkWithoutRestShows) {
         }
         without.engine->device().bind();
         pose = test::forest_pose(*without.engine);
-        for (int i = 0; i < frames; ++i) without.frame(pose);
+        for (int i = 0; i < shown; ++i) without.frame(pose);
         for (int i = 0; i < 5; ++i) {
             pose.position.x += 0.05;
             EXPECT_FALSE(without.frame(pose).at_rest);

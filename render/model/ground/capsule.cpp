@@ -122,11 +122,11 @@ Contact first_contact(const Capsule& capsule, const dvec3& move, const GroundTri
 }
 
 double height_at(const GroundTriangle& t, double x, double z) {
-    constexpr double nowhere = -std::numeric_limits<double>::infinity();
+    constexpr double no_height = -std::numeric_limits<double>::infinity();
     const dvec2 p(x, z), a(t.a.x, t.a.z), b(t.b.x, t.b.z), c(t.c.x, t.c.z);
     const auto cross = [](const dvec2& u, const dvec2& v) { return u.x * v.y - u.y * v.x; };
     const double of_c = cross(b - a, p - a), of_a = cross(c - b, p - b), of_b = cross(a - c, p - c), all = of_a + of_b + of_c;
-    if (all == 0 || of_a * all < 0 || of_b * all < 0 || of_c * all < 0) return nowhere;
+    if (all == 0 || of_a * all < 0 || of_b * all < 0 || of_c * all < 0) return no_height;
     return (of_a * t.a.y + of_b * t.b.y + of_c * t.c.y) / all;
 }
 
