@@ -1,5 +1,5 @@
 # Reads results.jsonl and writes RESULTS.md, history.csv and trend.svg into a folder:
-#   awk -f json.awk -f promises.awk -f report.awk -f trend.awk -v promises_file=FILE -v named=NAME -v to=FOLDER results.jsonl
+#   awk -f json.awk -f promises.awk -f report.awk -f svg.awk -f trend.awk -v promises_file=FILE -v named=NAME -v to=FOLDER results.jsonl
 # Every line is checked; the first that is wrong is named with NAME:LINE and nothing is written. Exit status 1.
 
 function refuse(what) { print what > "/dev/stderr"; failed = 1; exit 1 }

@@ -1,4 +1,4 @@
-# Draws trend.svg: the share of promises that hold, and the figures of the promises marked in the column trend, over time. For report.awk.
+# Draws trend.svg: the share of promises that hold, and the figures of the promises marked in the column trend, over time. For report.awk, after svg.awk.
 
 # Days since 1970 of a time such as 2026-11-24T21:00:08Z.
 function days_of(time,    y, m, d) {
@@ -8,9 +8,6 @@ function days_of(time,    y, m, d) {
     (substr(time, 12, 2) + substr(time, 15, 2) / 60 + substr(time, 18, 2) / 3600) / 24
 }
 
-function svg_text(text) { gsub(/&/, "\\&amp;", text); gsub(/</, "\\&lt;", text); return text }
-function put(text) { print text > svg_file }
-function label(x, y, class, text) { put(sprintf("<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">%s</text>", x, y, class, svg_text(text))) }
 function x_of(time) { return left + (last_day > first_day ? (days_of(time) - first_day) / (last_day - first_day) : 0.5) * inner_width }
 function y_of(figure) { return top + inner_height * (1 - figure / highest) }
 
@@ -80,20 +77,14 @@ function promise_panel(promise, x, y, sorted,    i, n, max_value, limit, scenes,
 }
 
 function write_trend(file,    p, shown_panels, count, sorted, i, high) {
-  svg_file = file
   page_width = 1080
-  split("#1f6fb4 #c4511a #2d8a4e #8a4fb0 #a07a00 #00848c #b03060", colours, " ")
   for (p = 1; p <= promises; ++p) if (trend_of[order[p]] == "yes") shown_panels[++count] = order[p]
   sort_by_time(sorted)
   if (figures > 0) { first_time = time_of[sorted[1]]; last_time = time_of[sorted[figures]] }
   first_day = figures > 0 ? days_of(first_time) : 0; last_day = figures > 0 ? days_of(last_time) : 0
   high = 200 + 210 * int((count + 2) / 3)
-  put(sprintf("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" height=\"%d\" font-family=\"sans-serif\" font-size=\"12\">", page_width, high, page_width, high))
-  put("<style>.title{font-weight:bold}.scale,.last{text-anchor:end}.scale,.date,.last{fill:#555}.note{font-size:11px;fill:#555}" \
-    ".grid{stroke:#ddd;fill:none}.bound{stroke:#c00;stroke-dasharray:5 4;fill:none}.line{fill:none;stroke-width:1.5}</style>")
-  put(sprintf("<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>", page_width, high))
+  open_svg(file, page_width, high)
   share_panel(sorted)
   for (i = 1; i <= count; ++i) promise_panel(shown_panels[i], (i - 1) % 3 * page_width / 3, 200 + 210 * int((i - 1) / 3), sorted)
-  put("</svg>")
-  close(svg_file)
+  close_svg()
 }
