@@ -54,7 +54,7 @@ pays_point() {
   [[ -z "${SUREFOOT_PAYS_FRAMES:-}" ]] || return 0
   keep cache_pays "$(sum "$ratio" 3)" --scene "$scene" --spread "$spread" \
     --note "$ms a frame; $(value made) new pictures a frame; overdraw $(value overdraw), written $(value overdraw_written)."
-  if [[ $line == "from the edge, flat" && $speed != 11 ]]; then
+  if [[ $line == "from the edge: flat" && $speed != 11 ]]; then
     keep cache_cpu_ratio "$(sum "$ratio" 3)" --scene "${scene%, flat}" --spread "$spread" --note "$ms a frame; $(value made) new pictures a frame."
   fi
 }
@@ -71,7 +71,7 @@ pays_bake() {
   return 1
 }
 
-# The forest has 100 trees a unit of its scale, and its side grows with them. The wall has the same extent with any number of layers.
+# A quick table has no masked pixels, so it needs a whole one. The forest has 100 trees a unit of its scale, and its side grows with them. The wall has the same extent with any number of layers.
 pays_scenes() {
   local scale surface layers
   for scale in 1 3 10; do
@@ -82,7 +82,8 @@ pays_scenes() {
       pays_bake "wall-$surface-$layers" "$build/tests/bench_layered_wall" "$layers" "$surface" "$work/wall-$surface-$layers.glb" || return 1
     done
   done
-  [[ -f "$state/costs.toml" ]] || "$surefoot" calibrate --quick --state "$state" >"$work/raw/pays-calibrate.log" 2>&1 || { failed=1; return 1; }
+  [[ -f "$state/costs.toml" ]] || echo "tests/bench/run: calibrating" >&2
+  [[ -f "$state/costs.toml" ]] || "$surefoot" calibrate --state "$state" >"$work/raw/pays-calibrate.log" 2>&1 || { failed=1; return 1; }
 }
 pays_forest() { if (( $1 == 10 )); then echo forest; else echo "forest-$1"; fi; }
 
@@ -90,11 +91,11 @@ pays_speeds() {
   local speed selector
   for speed in 0.35 0.7 1.4 2.8 5.6 11; do
     for selector in flat curve-accuracy; do
-      pays_point speed "from the edge, $selector" "forest, $speed m/s, $selector" forest "$selector" "$speed" 1280x720 moved_m_s
+      pays_point speed "from the edge: $selector" "forest, $speed m/s, $selector" forest "$selector" "$speed" 1280x720 moved_m_s
     done
-    pays_at=0.5 pays_point speed "inside, flat" "forest, inside, $speed m/s, flat" forest flat "$speed" 1280x720 moved_m_s
+    pays_at=0.5 pays_point speed "inside: flat" "forest, inside, $speed m/s, flat" forest flat "$speed" 1280x720 moved_m_s
     [[ ! -f "$work/hospital.walk" ]] || pays_path="$top/tests/bench/paths/hospital-tour.csv" \
-      pays_point speed "hospital from outside, flat" "hospital, $speed m/s, flat" hospital flat "$speed" 1280x720 moved_m_s
+      pays_point speed "hospital from outside: flat" "hospital, $speed m/s, flat" hospital flat "$speed" 1280x720 moved_m_s
   done
 }
 
@@ -103,7 +104,7 @@ pays_overdraw() {
   for surface in masked opaque; do
     for layers in 1 2 4 8; do
       for selector in flat curve-accuracy; do
-        pays_at=0.5 pays_point overdraw "$surface, $selector" "wall, $surface, layers: $layers, $selector" "wall-$surface-$layers" "$selector" \
+        pays_at=0.5 pays_point overdraw "$surface: $selector" "wall, $surface, layers: $layers, $selector" "wall-$surface-$layers" "$selector" \
           1.4 1280x720 overdraw
       done
     done
@@ -114,16 +115,16 @@ pays_sizes() {
   local scale size
   for scale in 1 3 10; do
     for size in 640x360 1280x720 1920x1080; do
-      pays_point size "$size, flat" "forest, trees: ${scale}00, $size, flat" "$(pays_forest "$scale")" flat 1.4 "$size" triangles_without
+      pays_point size "$size: flat" "forest, trees: ${scale}00, $size, flat" "$(pays_forest "$scale")" flat 1.4 "$size" triangles_without
     done
-    pays_point size "1280x720, curve-accuracy" "forest, trees: ${scale}00, 1280x720, curve-accuracy" "$(pays_forest "$scale")" \
+    pays_point size "1280x720: curve-accuracy" "forest, trees: ${scale}00, 1280x720, curve-accuracy" "$(pays_forest "$scale")" \
       curve-accuracy 1.4 1280x720 triangles_without
   done
 }
 
 # The chart and its points go beside the page, unless SUREFOOT_PAYS_FRAMES shortens the run to see that it works; then they stay in WORK.
 pays_group() {
-  local pays_frames=${SUREFOOT_PAYS_FRAMES:-36} pays_warm_up=48
+  local pays_frames=${SUREFOOT_PAYS_FRAMES:-30} pays_warm_up=72
   local pays_points=$work/pays.csv pays_path="" pays_at=0.05 pays_done=0 pays_all=46 to=$work
   [[ -z "${SUREFOOT_PAYS_FRAMES:-}" ]] || pays_warm_up=$pays_frames
   [[ ! -f "$work/hospital.walk" ]] || pays_all=52

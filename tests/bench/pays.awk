@@ -103,7 +103,6 @@ function draw_panel(i,    p, r, s) {
     label(left - 6, plot_y(r) + 4, "scale", sprintf("%.1f", r))
   }
   put(sprintf("<path stroke=\"#222\" stroke-width=\"1.5\" d=\"M%.1f %.1fh%.1f\"/>", left, plot_y(1), inner_width))
-  if (i == 1) label(left + 4, plot_y(1) - 5, "note", "above this line it costs more than it saves")
   put(sprintf("<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\">CPU time with pictures / without</text>", left - 38, top + inner_height / 2))
   centred(left + inner_width / 2, top + inner_height + 38, axis[p])
   if (lines[p] == 0) { label(left + 8, top + 20, "note", "not measured yet"); return }
@@ -139,7 +138,7 @@ END {
   highest = (int(5 * (highest > 1.1 ? highest : 1.1) + 0.999) + 0) / 5
   open_svg(to, page_width, high_px)
   for (i = 1; i <= panels; ++i) draw_panel(i)
-  label(58, high_px - 8, "note", "A point is all frames that count; its bar goes from the least to the greatest of six blocks of them. Points of one x are drawn beside each other.")
+  label(58, high_px - 8, "note", "Above the line at 1 the cache costs more than it saves. A bar goes from the least to the greatest of six blocks of frames. Points of one x are drawn beside each other.")
   close_svg()
   write_table()
 }

@@ -3,8 +3,8 @@
 // the difference. bench_picture_cache MODEL.walk PATH.csv [FRAMES 300] [SELECTOR flat] [FOLDER] [STATE_DIR] [LIFT_M 0]
 // [SPEED_M_S 1.4] [view|surround] [WIDTHxHEIGHT 1280x720] [WARM_UP] [AT 0.5] -> one JSON object. On stderr, in the end: what
 // these pictures would cost on meshes. With WARM_UP, so many frames come before, drawn with pictures alone, and all FRAMES
-// count. The middle of these lies at the share AT of the path's time, whatever the speed, unless the path begins later. Then one
-// picture is compared and no mesh is made: only times count.
+// count. Prices are corrected as in a walk on the real clock. The middle of the FRAMES lies at the share AT of the path's time,
+// whatever the speed, unless the path begins later. Then one picture is compared and no mesh is made: only times count.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +20,7 @@
 #include "render/gl/picture_faces.hpp"
 #include "render/image/image.hpp"
 #include "render/measure/image_metrics.hpp"
+#include "rt/frame/controller.hpp"
 #include "tests/bench/bench_picture.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/bench/fragments.hpp"
@@ -37,6 +38,12 @@ double process_cpu_us() {
     timespec now{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+std::int64_t steady_ns(void* /*context*/) {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return 1'000'000'000 * std::int64_t{now.tv_sec} + now.tv_nsec;
 }
 
 /// The same way at one speed; where it turns faster than an eye does, it takes its time.
@@ -64,6 +71,8 @@ struct Walker {
     PrepareHints hints;
     double cpu_us = 0, predicted_us = 0, pictures = 0, made = 0, captures_us = 0, triangles = 0, uncovered = 0;
     std::vector<double> frames_us{};  ///< CPU time of each frame that counts
+    bool corrects = false;            ///< prices are corrected by what frames take, as in walks on the real clock
+    rt::CostController controller{};
 
     SubmitReport frame(const Pose& before, const Pose& pose, const Pose& next, std::uint64_t number, double target_rad,
                        bool counts) {
@@ -71,8 +80,10 @@ struct Walker {
         const double start_us = process_cpu_us();
         engine->prepare(predict_region(before, pose, period_s, horizon_s), number, 1.4, 0, set, hints);
         hints.covered = engine->cover(pose, predict_region(pose, next, period_s, horizon_s));
-        engine->select(set, nominal_us, {}, target_rad);
-        SubmitReport report = engine->submit(pose, {.elapsed_us = 0, .limit_us = budget_us});
+        engine->select(set, nominal_us, {.factor = controller.factor()}, target_rad);
+        SubmitReport report =
+            engine->submit(pose, {.elapsed_us = 0, .limit_us = budget_us, .now_ns = corrects ? steady_ns : nullptr});
+        if (corrects) controller.update(report.predicted_us, report.finished_us);
         if (!counts) return report;
         frames_us.push_back(process_cpu_us() - start_us);
         cpu_us += frames_us.back();
@@ -112,6 +123,7 @@ Result<Walker> open_walker(const bench::Scene& scene, const Chosen& chosen, bool
     if (!engine) return engine.error();
     Walker walker;
     walker.engine = std::move(*engine);
+    walker.corrects = chosen.only_times();
     walker.engine->reserve(walker.set);
     return walker;
 }
