@@ -71,7 +71,8 @@ pays_bake() {
   return 1
 }
 
-# A quick table has no masked pixels, so it needs a whole one. The forest has 100 trees a unit of its scale, and its side grows with them. The wall has the same extent with any number of layers.
+# A quick table has no masked pixels, so it needs a whole one. The forest has 100 trees a unit of its scale, and its side grows with them.
+# The wall has the same extent with any number of layers.
 pays_scenes() {
   local scale surface layers
   for scale in 1 3 10; do
