@@ -108,13 +108,30 @@ PlacedBoxes::PlacedBoxes(std::vector<BoxForm> boxes, Index proxy, model::Model& 
     insert();
 }
 
+/// That of a box without a picture. What sees no sky is drawn without the sun.
+Index PlacedBoxes::material_of(const model::Representation& coarsest) {
+    constexpr model::EffectMask measured = model::effect_sun | model::effect_openness;
+    if ((coarsest.effects & measured) != model::effect_openness) return proxy_;
+    if (in_rooms_ == model::none) {
+        in_rooms_ = static_cast<Index>(model_.materials.size());
+        model::Material material = model_.materials[proxy_];
+        material.effects &= ~model::EffectMask{model::effect_sun};
+        model_.materials.push_back(material);
+    }
+    return in_rooms_;
+}
+
 void PlacedBoxes::insert() {
     model_.reps.clear();
+    in_rooms_ = model::none;
     for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
         Node& node = model_.nodes[n];
         const auto first = static_cast<Index>(model_.reps.size());
         const model::Representation& coarsest = meshes_[ranges_[n].first];
-        if (boxes_[n].shown_faces() > 0) emit_box(boxes_[n], proxy_, model_, model_.placements[coarsest.placement].motion);
+        if (boxes_[n].shown_faces() > 0) {
+            const Index material = boxes_[n].textured ? proxy_ : material_of(coarsest);
+            emit_box(boxes_[n], material, model_, model_.placements[coarsest.placement].motion);
+        }
         const auto from = meshes_.begin() + ranges_[n].first;
         model_.reps.insert(model_.reps.end(), from, from + ranges_[n].second);
         node.first_rep = first;

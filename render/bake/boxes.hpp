@@ -37,11 +37,12 @@ public:
 
 private:
     void insert();
+    [[nodiscard]] model::Index material_of(const model::Representation& coarsest);
     [[nodiscard]] bool is_best_somewhere(const model::Node& node, const model::CostModel& costs) const;
 
     model::Model& model_;
     std::vector<BoxForm> boxes_;
-    model::Index proxy_;
+    model::Index proxy_, in_rooms_ = model::none;
     std::vector<model::Representation> meshes_;                                            ///< the forms without boxes
     std::vector<std::pair<model::Index, std::uint32_t>> ranges_;                           ///< by node: its forms in meshes_
     std::size_t vertices_, indices_, parts_, placements_, materials_, textures_, texels_;  ///< of the model without boxes

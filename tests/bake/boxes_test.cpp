@@ -260,6 +260,25 @@ TEST(Boxes, ThatAreBestAtNoSizeAreTakenOutAgain) {
     EXPECT_EQ(m.parts[m.reps[m.nodes[1].first_rep].first_part].material, m.materials.size() - 1);
 }
 
+TEST(Boxes, OfOneColourAFaceAreWithoutTheSunWhereNoSkyIsSeen) {
+    model::Model m = two_leaves();
+    const auto proxy = static_cast<model::Index>(m.materials.size());
+    m.materials.emplace_back();
+    m.materials[proxy].effects = model::effect_vertex_colour | model::effect_sun | model::effect_openness;
+    m.reps[m.nodes[1].first_rep].effects = model::effect_openness;
+    m.reps[m.nodes[2].first_rep].effects = model::effect_openness | model::effect_sun;
+    std::vector<BoxForm> boxes = capture_boxes(m, {{true, true, true}, false, 28}, one_by_one, go_on);
+    PlacedBoxes placed(std::move(boxes), proxy, m);
+    const auto effects_of = [&](model::Index node) { return m.reps[m.nodes[node].first_rep].effects; };
+    ASSERT_EQ(m.reps[m.nodes[1].first_rep].kind, model::RepKind::colour_box);
+    EXPECT_EQ(effects_of(1), model::effect_vertex_colour | model::effect_openness);
+    EXPECT_EQ(effects_of(2), m.materials[proxy].effects);
+    EXPECT_EQ(effects_of(0), m.materials[proxy].effects) << "nothing is known of it";
+    m.losses.resize(m.reps.size());
+    static_cast<void>(placed.drop_idle(model::default_costs()));
+    EXPECT_LE(m.materials.size(), proxy + 2U) << "one material for all of them, placed once or twice";
+}
+
 /// Of the second leaf's box, which is the best form by far: whether it stays where it covers `share` of full detail.
 bool box_stays(float share, bool has_coarse_mesh) {
     model::Model m = two_leaves();
