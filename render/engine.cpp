@@ -159,19 +159,24 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     // What is below the acuity anyway does not look softer.
     const auto sharper = static_cast<float>(prepare::resolved_rad(out) / model::pixel_angle(out.region.centre, viewport));
     const double with_effects = static_cast<double>(e.with_effects.load(std::memory_order_relaxed));
+    // Pictures take their time first, lose nothing, and look softer too.
+    const double pictures_us = static_cast<double>(e.set_pictures_us.load(std::memory_order_relaxed));
+    const float all_value = out.curve.full_value + e.set_pictures_value.load(std::memory_order_relaxed);
+    const double of_forms = all_value > 0.0F ? static_cast<double>(out.curve.full_value / all_value) : 1.0;
     const auto lost = [&](const prepare::ValueCurve& curve, float at) {
         const double fixed_us =
-            static_cast<double>(e.costs.combine_at(at, viewport).fixed_us + e.costs.enlarge_us(at, viewport)) + slice_end_us;
+            static_cast<double>(e.costs.combine_at(at, viewport).fixed_us + e.costs.enlarge_us(at, viewport)) + slice_end_us +
+            pictures_us * static_cast<double>(at * at);
         const double planned_us = hints.planned_us[model::resolution_step(at)];
         const double items_us = (planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us)) / with_effects;
-        return prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(std::min(1.0F, at * sharper)));
+        return of_forms * prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(std::min(1.0F, at * sharper)));
     };
     const float other = e.resolution.trial(hints.planned_us);
     if (other > 0.0F) {
         e.resolution.judge(lost(out.curve, out.resolution), lost(e.preparer->value_at(other), other));
         e.preparer->add_value_time(out);
     }
-    out.resolution_value = e.resolution.gain() * out.curve.full_value;
+    out.resolution_value = e.resolution.gain() * all_value;
 }
 
 Result<void> Engine::set_selector(std::string_view name) {

@@ -152,8 +152,12 @@ void Engine::Impl::prepay_pictures(const prepare::PreparedFrame& set) {
     const Pose& pose = set.region.centre;
     const model::Viewport viewport = options.device.viewport;
     const model::Frustum seen = model::make_frustum(pose, viewport, model::far_corners_m(model.nodes[0].box));
-    for (const cache::Index box : pictures.draws(set.covered, cache::view_pixels(pose, viewport), seen).boxes)
-        pictures_us += picture_us(box, pose);
+    const cache::CacheDraws& in_set = pictures.draws(set.covered, cache::view_pixels(pose, viewport), seen);
+    for (const cache::Index box : in_set.boxes) pictures_us += picture_us(box, pose);
+    pictures_us = static_cast<double>(static_cast<float>(pictures_us));  // as in the list of items, which captures keep
+    const double at = static_cast<double>(drawn_resolution);
+    set_pictures_us.store(static_cast<float>(pictures_us / (at * at)), std::memory_order_relaxed);
+    set_pictures_value.store(static_cast<float>(in_set.value), std::memory_order_relaxed);
     if (pictures_us > 0) offered.prepay({select::ItemKind::pictures, 0, static_cast<float>(pictures_us), 0});
 }
 
@@ -271,7 +275,7 @@ double Engine::Impl::left_for_uncovered_us(const SubmitLimits& limits) const {
 /// Before a picture begins: pictures of the set are chosen for the true pose. Where too much would have to be drawn in their
 /// place, no prepared set may be used.
 void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, SubmitReport& report) {
-    after_us = pictures_value = 0;
+    after_us = shown_us = pictures_value = 0;
     shown_pictures.clear();
     shown_boxes.clear();
     made_boxes.clear();
@@ -303,7 +307,8 @@ void Engine::Impl::begin_pictures(const Pose& pose, const SubmitLimits& limits, 
                     report);
     }
     pictures_value = draws_now.value;
-    after_us = report.pictures_us + coarse_us;
+    after_us = coarse_us;
+    shown_us = report.pictures_us;
     capture_pictures(report);
 }
 

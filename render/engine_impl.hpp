@@ -105,7 +105,8 @@ struct Engine::Impl {
     double picture_factor GUARDED_BY(draws) = 1;         ///< time to draw pictures, over the table's and the frame's correction
     std::uint32_t picture_frames GUARDED_BY(draws) = 0;  ///< that drew enough of them to be timed
     double pictures_value GUARDED_BY(draws) = 0;         ///< of what the drawn pictures show
-    double after_us GUARDED_BY(draws) = 0;               ///< of what comes after the last slice, whatever is drawn before
+    double after_us GUARDED_BY(draws) = 0;               ///< of coarse forms after the last slice, in place of pictures
+    double shown_us GUARDED_BY(draws) = 0;               ///< of the drawn pictures, after all forms
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
@@ -114,6 +115,8 @@ struct Engine::Impl {
     EffectWorth worth;                           ///< of the thread that prepares; empty where no effects are bought
     std::atomic<model::EffectMask> without = 0;  ///< PreparedFrame::without of the next sets
     std::atomic<float> with_effects{1};          ///< time of forms and bought effects together, as a multiple of the forms'
+    /// Of the pictures of the last selection's set: to draw them at full resolution, and full detail of what they show.
+    std::atomic<float> set_pictures_us{0}, set_pictures_value{0};
     std::atomic<float> light_hour{std::numeric_limits<float>::quiet_NaN()};  ///< of set_light()
     double promised_rad GUARDED_BY(draws) = 0;                               ///< error that the last cut was to keep; 0: none
     /// How long the frame before took; on a clock that does not run within frames, as predicted. 0: it drew no cut.

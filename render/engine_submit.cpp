@@ -109,6 +109,7 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     check.next_stand_in_us = with(p.stand_in) * scale;
     check.rest_stand_in_us =
         (with(p.rest) + static_cast<double>(enlarge_us()) + after_us) * correction.factor;  // of many: little spread
+    check.last_us = shown_us * correction.factor;
     check.limit_us = limits.limit_us - limits.margin_us;
     check.deadline_us = limits.deadline_us - limits.margin_us;
     if (limits.now_ns != nullptr && !use_last) {  // times of another clock repeat the predictions
@@ -290,6 +291,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.begun_us = limits.now_ns != nullptr ? e.now_us(limits) - begins_us : 0.0;
     if (e.use_last) {
         e.submit_last(pose, limits, start_us, report);
+        if (report.uncovered_items > 0) report.downgraded_slices = report.slices;  // the cut was given up for what is uncovered
     } else {
         e.submit_cut(limits, start_us, report);
     }
@@ -297,9 +299,10 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.submitted_us = e.now_us(limits) - start_us;
     e.device->finish_frame();
     report.finished_us = e.now_us(limits) - start_us;
-    if (limits.now_ns != nullptr && !e.use_last)
-        e.profile().finish(limits.elapsed_us + report.finished_us, limits.elapsed_us + report.predicted_us * e.correction.factor,
-                           limits.scale_us());
+    if (limits.now_ns != nullptr && !e.use_last) {  // without the pictures: they are timed by themselves
+        const double from_us = limits.elapsed_us - e.shown_us * e.correction.factor;
+        e.profile().finish(from_us + report.finished_us, from_us + report.predicted_us * e.correction.factor, limits.scale_us());
+    }
     const bool timed = report.finished_us > 0;  // else no clock runs within the frame, and no forecast was made of it
     report.forecast_us = timed && e.forecast_us > 0 ? e.forecast_us - limits.elapsed_us : 0;
     const gl::FrameStats stats = e.device->stats();

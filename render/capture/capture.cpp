@@ -82,6 +82,8 @@ Result<select::Cut> replay(const Capture& capture, std::string_view selector_nam
                               0,
                               &items,
                               capture.max_error_rad};
+    for (const select::Item& item : items.offered())
+        if (item.prepaid && item.kind == select::ItemKind::pictures) input.beside_us += static_cast<double>(item.cost_us);
     select::Cut cut;
     select::reserve(cut, candidates);
     selector->run(input, state, cut);

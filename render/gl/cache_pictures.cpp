@@ -20,6 +20,9 @@ constexpr std::uint32_t pictures_a_layer = 16, usual_vertices = 18;
 /// In a frame a picture may be drawn into another one, and shown.
 constexpr std::uint32_t draws_a_picture = 2;
 constexpr std::uint16_t no_program = 0xffff;
+/// llvmpipe (Mesa 22.3) has 64 places for work on targets that is not finished. Once all were in use, each later flush waits for
+/// the one before, for as long as the context lives. Then no slice is drawn while the next one is handed over.
+constexpr std::uint32_t max_targets_in_flight = 16;
 
 constexpr const char* picture_vertex = R"(#version 430 core
 layout(location = 0) in vec4 place;
@@ -85,6 +88,7 @@ bool is_drawable(const Api& gl, const CachePictures& pictures) {
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) return false;
     gl.ClearColor(0, 0, 0, 0);
     gl.Clear(GL_COLOR_BUFFER_BIT);
+    gl.Finish();  // max_targets_in_flight
     return true;
 }
 
@@ -245,6 +249,7 @@ void GlDevice::draw_captures() {
     for (std::size_t i = 0; i < count; ++i) {
         draw_capture(captures_[i]);
         end_slice();
+        wait_slices(max_targets_in_flight);
     }
     end_captures();
     set_texture_detail(detail);

@@ -169,6 +169,7 @@ struct CheckInput {
     double next_us = 0;              ///< the next slice in full, with headroom
     double next_stand_in_us = 0;     ///< the next slice as its stand-in
     double rest_stand_in_us = 0;     ///< all slices after it as stand-ins, expected
+    double last_us = 0;              ///< after all slices, expected; timed by itself, so that the usual tail is without it
     double limit_us = 0;             ///< when the frame should be done
     double deadline_us = 0;          ///< when it is late; below the limit it counts as the limit
     double margin = 1.0;             ///< factor on top of the headroom
@@ -178,7 +179,8 @@ struct CheckInput {
 /// When the frame would end, us since it was due, if the slice is drawn in full and all after it as stand-ins. NaN: unknown.
 /// Predictions are multiplied by a factor of 1..8: elapsed / predicted time of what is finished. A few early slices must not
 /// decide alone. So a prior time is added to both: 1/20 of the limit, and half of the rest's cost times the share of time left.
-/// The factor is divided by what it would be for a usual frame, down to 1, and multiplied by the usual tail.
+/// The factor is divided by what it would be for a usual frame, down to 1, and multiplied by the usual tail. What comes last
+/// is not multiplied by that: it belongs to slices.
 double forecast_us(const CheckInput& input);
 /// True: draw the slice in full. False: draw this and all later slices as stand-ins. Pure. The forecast has to be within the
 /// limit. What it would be without the usual figures has to be within the deadline: frames are forgiven no more than that.

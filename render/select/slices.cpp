@@ -189,7 +189,8 @@ namespace {
 
 /// How much longer than predicted a frame takes whose finished part took `finished_us`: 1..8, 8 if it is unknown.
 double wrong_by(const CheckInput& input, double finished_us) {
-    const double rest_us = std::isfinite(input.rest_stand_in_us) ? std::max(input.rest_stand_in_us, 0.0) : 0.0;
+    const double after_us = input.rest_stand_in_us + input.last_us;
+    const double rest_us = std::isfinite(after_us) ? std::max(after_us, 0.0) : 0.0;
     const double time_left = std::clamp(1.0 - input.elapsed_us / input.limit_us, 0.0, 1.0);  // NaN stays one: does not fit
     const double prior_us = 0.05 * input.limit_us + 0.5 * rest_us * time_left;
     const double predicted_us = std::max(input.predicted_so_far_us - input.in_flight_us, 0.0);
@@ -198,9 +199,10 @@ double wrong_by(const CheckInput& input, double finished_us) {
 }
 
 /// What is in flight counts as predicted: it says nothing of how wrong the frame is, and may be as wrong.
-double end_us(const CheckInput& input, double factor) {
+double end_us(const CheckInput& input, double factor, double last_factor) {
     const double finished_us = input.elapsed_us - input.in_flight_us;
-    return finished_us + input.in_flight_us * factor + (input.next_us + input.rest_stand_in_us) * factor * input.margin;
+    return finished_us + input.in_flight_us * factor + (input.next_us + input.rest_stand_in_us) * factor * input.margin +
+           input.last_us * last_factor * input.margin;
 }
 
 }  // namespace
@@ -209,13 +211,15 @@ double forecast_us(const CheckInput& input) {
     const double predicted_us = std::max(input.predicted_so_far_us - input.in_flight_us, 0.0);
     const double usual = wrong_by(input, std::max(input.usual_head, 1.0) * predicted_us);
     const double wrong = wrong_by(input, input.elapsed_us - input.in_flight_us);
-    return end_us(input, std::max(wrong / usual, 1.0) * std::max(input.usual_tail, 1.0));
+    const double unusual = std::max(wrong / usual, 1.0);
+    return end_us(input, unusual * std::max(input.usual_tail, 1.0), unusual);
 }
 
 bool still_fits(const CheckInput& input) {
     if (input.next_stand_in_us >= input.next_us) return true;   // the stand-in would gain nothing
     if (!(forecast_us(input) <= input.limit_us)) return false;  // NaN: does not fit
-    return end_us(input, wrong_by(input, input.elapsed_us - input.in_flight_us)) <= std::max(input.deadline_us, input.limit_us);
+    const double wrong = wrong_by(input, input.elapsed_us - input.in_flight_us);
+    return end_us(input, wrong, wrong) <= std::max(input.deadline_us, input.limit_us);
 }
 
 }  // namespace surefoot::select

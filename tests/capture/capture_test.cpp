@@ -161,6 +161,28 @@ TEST(Capture, HoldsWhatWasOfferedAndBoughtBesideForms) {
     EXPECT_FALSE(read_capture(file.path));
 }
 
+TEST(Capture, HoldsThePriceOfPictures) {
+    Scene s(test::town(4));
+    prepare::Region region;
+    region.centre.position = dvec3(0, 3, 30);
+    s.look(region);
+    std::vector<double> cut_us;
+    for (const float pictures_us : {0.0F, 1500.3F}) {
+        select::ItemList items;
+        items.prepay({select::ItemKind::pictures, 0, pictures_us, 0});
+        select::SelectInput input = s.input(5500);
+        input.items = &items;
+        input.beside_us = static_cast<double>(pictures_us);
+        select::find_selector("threshold")->run(input, s.state, s.cut);
+        const Capture taken = take(input, "threshold", memory_of(s), s.cut);
+        const auto cut = replay(taken);
+        EXPECT_TRUE(verify(taken));
+        EXPECT_EQ(cut->predicted_us, s.cut.predicted_us);
+        cut_us.push_back(static_cast<double>(s.cut.sum.raster_us));
+    }
+    EXPECT_LT(cut_us[1], cut_us[0]) << "pictures take their time from forms";
+}
+
 TEST(Capture, TheOracleCanBeTriedOnTheSameFrame) {
     const Capture c = captured("threshold");
     const auto best = replay(c, "oracle");

@@ -155,6 +155,8 @@ TEST(PictureCache, TooMuchInPlaceOfPicturesIsDrawnAsWithoutASet) {
         EXPECT_GT(report.uncovered_items, 0U);
         EXPECT_LE(report.predicted_us, share * all_us) << share;
         EXPECT_EQ(report.captures_us, 0) << share;
+        EXPECT_GT(report.slices, 0U);
+        EXPECT_EQ(report.downgraded_slices, report.slices) << "nothing of the cut was drawn";
     }
 }
 

@@ -37,6 +37,7 @@ struct FakeGl {
     std::set<GLenum> enabled{};                  ///< by glEnable, and not disabled
     std::size_t clip_planes = 0;                 ///< that were enabled at once at most
     int array_draws = 0;                         ///< calls of glDrawArrays: passes over a picture
+    int cleared = 0, max_cleared = 0;            ///< glClear calls that nothing has waited for; the largest number of them
     std::vector<std::vector<std::byte>> mapped;  ///< memory of the mapped buffers
     /// Objects of every kind, made and not deleted.
     [[nodiscard]] int objects() const {
@@ -137,8 +138,14 @@ inline gl::Api fake_api() {
         return reinterpret_cast<GLsync>(&FakeGl::get());
     };
     api.DeleteSync = [](GLsync sync) { FakeGl::get().syncs -= sync != nullptr ? 1 : 0; };
+    api.Clear = [](GLbitfield) {
+        FakeGl& fake = FakeGl::get();
+        fake.max_cleared = std::max(fake.max_cleared, ++fake.cleared);
+    };
+    api.Finish = [] { FakeGl::get().cleared = 0; };
     api.ClientWaitSync = [](GLsync, GLbitfield, GLuint64) -> GLenum {
         FakeGl& fake = FakeGl::get();
+        fake.cleared = std::max(0, fake.cleared - 1);
         const auto at = static_cast<std::size_t>(fake.waits++);
         if (fake.wait_results.empty()) return GL_ALREADY_SIGNALED;
         return fake.wait_results[std::min(at, fake.wait_results.size() - 1)];

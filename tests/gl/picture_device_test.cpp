@@ -327,6 +327,22 @@ TEST_F(PicturesOnFake, on_a_lost_device_all_calls_are_safe_and_draw_nothing) {
     EXPECT_EQ(FakeGl::get().mapped, before) << "rewritten while the GPU may read them";
 }
 
+/// llvmpipe never draws beside its caller again once work on 64 targets was waiting.
+TEST_F(PicturesOnFake, few_targets_wait_at_once) {
+    const auto device = open(128, [](FakeGl&) {});
+    EXPECT_LE(FakeGl::get().max_cleared, 8) << "a layer each is cleared";
+    device->draws.plays();
+    device->begin_frame(Pose{});
+    device->finish_frame();
+    FakeGl::get().cleared = FakeGl::get().max_cleared = 0;
+    for (std::uint16_t i = 0; i < gl::max_captures; ++i)
+        EXPECT_TRUE(device->capture_picture(picture_from(pictured, dvec3(0), {i, 0, 0, 128}), scene_.items));
+    draw_frame(*device, Pose{}, scene_.items, {});
+    EXPECT_EQ(device->stats().captures, gl::max_captures);
+    EXPECT_LE(FakeGl::get().max_cleared, 32);
+    EXPECT_GE(FakeGl::get().max_cleared, 8) << "a walk's new pictures of a frame need no wait";
+}
+
 TEST_F(PicturesOnFake, captures_that_wait_are_drawn_once_and_end_with_a_load) {
     const auto device = open(1, [](FakeGl&) {});
     const gl::CachePicture picture = picture_from(pictured, dvec3(0), {0, 0, 0, 128});

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "render/select/select.hpp"
 
@@ -54,6 +55,24 @@ TEST(FrameProfile, ALatenessThatEachFrameMakesUpForStopsNoFrame) {
     EXPECT_TRUE(still_fits(middle(1.7, profile)));
     EXPECT_NEAR(forecast_us(middle(1.7, profile)), 13'600 + 15'000, 100);
     EXPECT_EQ(profile.at(20'000, frame_limit_us).head, 1.0) << "nothing was checked there";
+}
+
+/// Pictures are timed by themselves. Forms that were late once must not make them look late.
+TEST(FrameProfile, WhatComesLastIsNoPartOfTheTail) {
+    FrameProfile profile;
+    draw_frames(profile, 1, 1.0, 28'000);
+    CheckInput in = middle(1.0, profile);
+    EXPECT_NEAR(in.usual_tail, 1.25, 1e-9);
+    in.rest_stand_in_us = 4'000;
+    in.last_us = 8'000;
+    EXPECT_NEAR(forecast_us(in), 8'000 + 1.25 * 7'000 + 8'000, 1e-6);
+    const double before_us = forecast_us(in);
+    in.elapsed_us = 12'000;  // the frame itself is slow: then all of it is
+    EXPECT_GT(forecast_us(in), before_us + 4'000 + 0.1 * 8'000);
+    in = middle(1.0, {});
+    const double in_slices_us = forecast_us(in);
+    in.last_us = std::exchange(in.rest_stand_in_us, 0);
+    EXPECT_EQ(forecast_us(in), in_slices_us) << "where nothing is known it counts as slices do";
 }
 
 TEST(FrameProfile, NoFrameIsForgivenMoreThanItsDeadline) {
