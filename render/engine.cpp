@@ -169,7 +169,8 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
             pictures_us * static_cast<double>(at * at);
         const double planned_us = hints.planned_us[model::resolution_step(at)];
         const double items_us = (planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us)) / with_effects;
-        return of_forms * prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(std::min(1.0F, at * sharper)));
+        return of_forms * prepare::lost_share(curve, items_us) +
+               static_cast<double>(e.costs.blur_loss_at(std::min(1.0F, at * sharper)));
     };
     const float other = e.resolution.trial(hints.planned_us);
     if (other > 0.0F) {

@@ -20,7 +20,7 @@ constexpr std::uint32_t pictures_a_layer = 16, usual_vertices = 18;
 /// In a frame a picture may be drawn into another one, and shown.
 constexpr std::uint32_t draws_a_picture = 2;
 constexpr std::uint16_t no_program = 0xffff;
-/// llvmpipe (Mesa 22.3) has 64 places for work on targets that is not finished. Once all were in use, each later flush waits for
+/// llvmpipe (Mesa 22.3) has a fixed number of places for unfinished work on targets. Once all were in use, each flush waits for
 /// the one before, for as long as the context lives. Then no slice is drawn while the next one is handed over.
 constexpr std::uint32_t max_targets_in_flight = 16;
 

@@ -327,7 +327,7 @@ TEST_F(PicturesOnFake, on_a_lost_device_all_calls_are_safe_and_draw_nothing) {
     EXPECT_EQ(FakeGl::get().mapped, before) << "rewritten while the GPU may read them";
 }
 
-/// llvmpipe never draws beside its caller again once work on 64 targets was waiting.
+/// Once too many targets have waited, llvmpipe never again draws beside what hands over.
 TEST_F(PicturesOnFake, few_targets_wait_at_once) {
     const auto device = open(128, [](FakeGl&) {});
     EXPECT_LE(FakeGl::get().max_cleared, 8) << "a layer each is cleared";
