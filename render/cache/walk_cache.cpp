@@ -56,12 +56,21 @@ WalkCache::WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vec
     seen_now_.resize(count, false);
 }
 
+/// Room comes by itself.
+void WalkCache::forget_refused() {
+    refused_.clear();
+    std::fill(out_until_.begin(), out_until_.end(), 0U);
+    no_place_until_ = {};
+    tight_until_ = 0;
+}
+
 void WalkCache::forget() {
     for (Index i = 0; i < held_.size(); ++i) {
         HeldPicture& held = held_[i];
         if (held.any() && held.until == 0 && !is_pending(i)) held.until = frame_ + relied_frames;
     }
     for (Pending& pending : pending_) pending.before = {};
+    forget_refused();
     const auto since = static_cast<double>(frame_ - forgot_frame_);
     if (since <= same_change_frames) return;
     forget_frames_ = forget_frames_ > 0 ? std::min(since, 0.5 * (forget_frames_ + since)) : since;
@@ -115,6 +124,7 @@ void WalkCache::clear() {
     for (Index i = 0; i < held_.size(); ++i)
         if (held_[i].any()) drop(i);
     pending_.clear();
+    forget_refused();
 }
 
 WalkCache::Cone WalkCache::cone_of(const Box& box, const dvec3& eye) {
@@ -285,13 +295,14 @@ void WalkCache::work_out_facts(const PlanView& view, Index& next, std::uint32_t&
     for (Index tested = 0; tested < boxes_.size() && left > 0; ++tested) {
         const Index i = next;
         next = i + 1 < boxes_.size() ? i + 1 : 0;
-        if (in_view_[i] == in_view && work_out_fact(i, view)) --left;
+        if (in_view_[i] != in_view) continue;
+        estimate(i, view);
+        if (work_out_fact(i, view)) --left;
     }
 }
 
 /// False: that took no time.
 bool WalkCache::work_out_fact(Index i, const PlanView& view) {
-    estimate(i, view);
     facts_[i] = {0, full_worth_us(i, view.us_per_value)};
     if (!boxes_.may_have_picture(i) || !(facts_[i].worth_us > min_saving_us)) return false;
     CacheOffer offer;
@@ -313,6 +324,7 @@ bool WalkCache::serves_on(Index box, const PlanView& view) const {
 /// Of a picture that serves for a while: all that it saves, since it is paid for. Else what a new one would bring.
 float WalkCache::own_net_us(Index box, const PlanView& view) {
     serves_[box] = false;
+    if (frame_ < out_until_[box]) return 0;
     if (!(facts_[box].net_us > 0.0F) && !held_[box].any()) return 0;
     if (!options_.surround && !in_view_[box]) return 0;
     serves_[box] = serves_on(box, view);
@@ -328,7 +340,6 @@ void WalkCache::choose(Index i) {
         for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) choose(child);
         return;
     }
-    if (frame_ < out_until_[i]) return;
     candidates_.push_back({i, own_us_[i], static_cast<bool>(in_view_[i])});
 }
 
@@ -382,12 +393,12 @@ std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
     return offers_;
 }
 
-/// The box's own slot goes first, then the longest unused of those that no set relies on. False: there is no room; nothing is
-/// changed.
+/// The box's own slot goes first, then the longest unused of those that no set relies on. False: there is no room; no
+/// picture goes, and it is noted as refused.
 bool WalkCache::find_room(Index box, std::uint32_t texels) {
     victims_.clear();
     if (held_[box].slot.texels == texels) return true;
-    if (no_room_for_ != 0 && texels >= no_room_for_ && held_[box].slot.texels < texels) {
+    if (no_room_for_ != 0 && texels >= no_room_for_ && !held_[box].any()) {
         refuse(box, texels);
         return false;
     }

@@ -2,6 +2,7 @@
 // Belongs to the frame thread. After it is made nothing allocates. It reads poses and costs, and no clock and no graphics API.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -101,7 +102,7 @@ public:
     std::span<const CacheOffer> plan(const PlanView& view);
     [[nodiscard]] std::span<const CacheOffer> offers() const { return offers_; }  ///< of the last plan()
     /// The box gets the picture: drop what no set relies on, where there is no room. False: there is none. Until captured(), its
-    /// slot holds nothing.
+    /// slot holds the picture of before, or nothing. drop_pending() brings that one back.
     bool take(const CacheOffer& offer);
     /// Boxes whose new pictures are to be captured; they are of the light that comes, whenever that is set.
     [[nodiscard]] bool is_pending(Index box) const;
@@ -177,12 +178,14 @@ private:
     [[nodiscard]] bool measured(Index box);
     void estimate(Index box, const PlanView& view);
     [[nodiscard]] double allowed_for_new_rad(Index box, const PlanView& view) const;
+    void forget_refused();
     void refuse(Index box, std::uint32_t texels);
     void make_room_by_worth();
     [[nodiscard]] bool takes_place_of_waiting(const Candidate& candidate, std::uint32_t texels) const;
     void sum_up_worth(std::uint32_t side);
     [[nodiscard]] Slot place_for(const Refused& refused) const;
     [[nodiscard]] bool shown_by_larger(Index box) const;
+    [[nodiscard]] static std::size_t size_of(std::uint32_t texels) { return texels <= 64 ? 0 : texels <= 128 ? 1 : 2; }
     [[nodiscard]] static std::size_t cell_of(std::uint32_t layer, std::uint32_t row, std::uint32_t column) {
         return (std::size_t{layer} * cells_a_side + row) * cells_a_side + column;
     }
@@ -221,8 +224,8 @@ private:
     std::vector<bool> in_view_;      ///< the same
     std::vector<bool> relies_;       ///< by box: a set needs something below it
     std::vector<Refused> refused_;
-    std::uint64_t tight_until_ = 0;         ///< the frame until which offers must find room
-    std::uint64_t no_place_until_ = 0;      ///< the same: nothing was worth less than what was refused
+    std::uint64_t tight_until_ = 0;                  ///< the frame until which offers must find room
+    std::array<std::uint64_t, 3> no_place_until_{};  ///< by size, the same: nothing was worth less than what was refused
     std::vector<std::uint64_t> out_until_;  ///< by box: it went for another; no picture of it is offered before this frame
     std::vector<float> cell_worth_us_;      ///< by square of 64 texels
 

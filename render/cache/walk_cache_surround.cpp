@@ -66,7 +66,7 @@ void WalkCache::estimate(Index box, const PlanView& view) {
 
 /// What a picture whose box was refused is worth; it waits until a place for it is found and left.
 void WalkCache::refuse(Index box, std::uint32_t texels) {
-    if (frame_ < no_place_until_ || refused_.size() == max_refused) return;
+    if (frame_ < no_place_until_[size_of(texels)] || refused_.size() == max_refused) return;
     if (std::any_of(refused_.begin(), refused_.end(), [&](const Refused& other) { return other.box == box; })) return;
     refused_.push_back({box, texels, own_us_[box], 0});
 }
@@ -91,7 +91,7 @@ bool WalkCache::shown_by_larger(Index box) const {
 }
 
 /// By square of 64 texels: what its pictures save in a frame, shared so that a place of `side` squares sums up to what goes with
-/// it. What goes already, or is new, is not to go for another.
+/// it. What goes already, or waits to be captured, is not to go for another.
 void WalkCache::sum_up_worth(std::uint32_t side) {
     std::fill(cell_worth_us_.begin(), cell_worth_us_.end(), 0.0F);
     for (Index i = 0; i < held_.size(); ++i) {
@@ -134,22 +134,23 @@ void WalkCache::make_room_by_worth() {
     std::erase_if(refused_, [&](const Refused& each) { return each.until != 0 && frame_ > each.until + 1; });
     std::size_t searches = 0;
     for (Refused& refused : refused_) {
-        if (refused.until != 0) continue;
+        if (refused.until != 0 || frame_ < no_place_until_[size_of(refused.texels)]) continue;
         if (++searches > max_searches) break;
         sum_up_worth(refused.texels / min_slot_texels);
         const Slot place = place_for(refused);
         if (place.texels == 0) {
-            no_place_until_ = frame_ + options_.kept_frames;
-            break;
+            no_place_until_[size_of(refused.texels)] = frame_ + options_.kept_frames;
+            continue;
         }
         refused.until = frame_ + relied_frames;
         for (Index i = 0; i < held_.size(); ++i) {
             if (!held_[i].any() || !overlap(held_[i].slot, place)) continue;
             held_[i].until = refused.until;
-            out_until_[i] = refused.until + options_.kept_frames;
+            if (i != refused.box) out_until_[i] = refused.until + options_.kept_frames;
         }
     }
-    if (frame_ < no_place_until_) std::erase_if(refused_, [](const Refused& each) { return each.until == 0; });
+    std::erase_if(refused_,
+                  [&](const Refused& each) { return each.until == 0 && frame_ < no_place_until_[size_of(each.texels)]; });
 }
 
 }  // namespace surefoot::cache

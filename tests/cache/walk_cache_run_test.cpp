@@ -215,6 +215,7 @@ TEST(WalkCacheRun, WhereTheEyeStaysNoPictureIsMadeTwice) {
                 for (int i = 0; i < 50; ++i) ASSERT_TRUE(run.stand()) << i;
                 EXPECT_EQ(run.refreshes(), made) << surround << " " << layers << " " << place;
             }
+            EXPECT_GT(run.refreshes(), 25 * layers) << "more than find room";
         }
     }
 }
