@@ -31,8 +31,9 @@ constexpr std::uint32_t first_picture_item = 1;  // of ItemKind::refresh; the sh
 constexpr std::size_t uncovered_chunk = 32;
 constexpr std::uint32_t timed_every = 8;  // frames with pictures
 constexpr double min_timed_us = 200;      // by the table; less says nothing
-constexpr double learnt_share = 0.25, min_picture_factor = 0.25, max_picture_factor = 4;
-constexpr double min_sample = 0.05;  // of the prediction; in less nothing was drawn
+constexpr double learnt_share = 0.5, min_picture_factor = 0.25, max_picture_factor = 8;
+constexpr double forgotten_share = 1.0 / 512;  // a frame, while nothing is timed: what did not pay is tried again
+constexpr double min_sample = 0.05;            // of the prediction; in less nothing was drawn
 
 double us_of(const model::FrameCombine& combine, const model::ItemCost& cost) {
     return static_cast<double>(combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us);
@@ -414,6 +415,7 @@ std::vector<std::uint8_t> Engine::birds_eye(std::span<const cache::FrameBox> fra
 /// A frame's time is corrected as a whole, mostly by what forms take. So from time to time pictures are timed by themselves: all
 /// before them is waited for, and then they are.
 void Engine::Impl::draw_pictures(const SubmitLimits& limits, SubmitReport& report) {
+    if (limits.now_ns != nullptr) picture_factor += forgotten_share * (1 - picture_factor);
     if (shown_pictures.empty()) return;
     device->draws.plays();
     const double table_us = report.pictures_us / picture_factor;

@@ -10,16 +10,21 @@ namespace surefoot::cache {
 
 namespace {
 
-constexpr float min_saving_us = 5;              // less is not worth a picture
-constexpr double same_change_frames = 2;        // what is forgotten again so soon was forgotten for one reason
-constexpr double min_life_frames = 4;           // for less, nothing is offered
-constexpr std::uint64_t tight_frames = 16;      // after room was missing, only what finds room is offered
-constexpr double rounded_down = 1 - 1e-6;       // errors are reported in float
-constexpr float new_share = 0.5F;               // of a cost that was measured anew
+constexpr float min_saving_us = 5;          // less is not worth a picture
+constexpr double same_change_frames = 2;    // what is forgotten again so soon was forgotten for one reason
+constexpr double min_life_frames = 4;       // for less, nothing is offered
+constexpr std::uint64_t tight_frames = 16;  // after room was missing, only what finds room is offered
+constexpr double rounded_down = 1 - 1e-6;   // errors are reported in float
+constexpr float new_share = 0.5F;           // of a cost that was measured anew
+constexpr double doubt = 0.15;              // of what a picture saves, where pictures take twice as long as the table says
+constexpr float pays_band = 0.1F;  // of its price: so much less must a picture save before it is left out, and more to come back
 constexpr float share_alone = 0.5F;             // of what lies across several boxes, for each by itself
 constexpr float dearer = 1.1F;                  // than when a picture was last worked out: then it is worked out again at once
 constexpr std::uint64_t view_first_frames = 8;  // after a picture was offered in view
 constexpr std::size_t max_tries = 64;           // candidates that are worked out in a frame
+
+/// Where the table errs about pictures, it is not trusted to the last.
+float sure_share(double picture_factor) { return static_cast<float>(1 - doubt * std::clamp(picture_factor - 1, 0.0, 1.0)); }
 
 }  // namespace
 
@@ -45,6 +50,7 @@ WalkCache::WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vec
     trial_ = slots_;
     relies_.resize(count, false);
     serves_.resize(count, false);
+    pays_.resize(count, true);
     in_view_.resize(count, false);
     refused_.reserve(max_refused);
     out_until_.resize(count, 0);
@@ -159,7 +165,7 @@ const model::CoverBits& WalkCache::cover(const ViewPixels& pixels, double radius
     bool any_valid = false;
     for (Index i = 0; i < held_.size(); ++i) {
         if (held_[i].until != 0 && frame_ > held_[i].until) drop(i);
-        if (!held_[i].any() || held_[i].until != 0 || is_pending(i)) continue;
+        if (!held_[i].any() || held_[i].until != 0 || !pays_[i] || is_pending(i)) continue;
         if (!valid_around(held_[i].picture, pixels.eye, radius_m, allowed_rad(i, held_[i].box, pixels))) continue;
         if (before_blended(held_[i].box)) continue;
         covered_.set(i);
@@ -252,7 +258,7 @@ double WalkCache::allowed_for_new_rad(Index box, const PlanView& view) const {
 
 /// A new picture of the box, where it pays. False: it does not.
 bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) const {
-    const float saves_us = full_worth_us(box, view.us_per_value) - draw_us(box, view);
+    const float saves_us = sure_share(view.picture_factor) * full_worth_us(box, view.us_per_value) - draw_us(box, view);
     if (!(saves_us > min_saving_us)) return false;
     if (before_blended(boxes_.filled(box))) return false;
     const auto prospect = prospect_of(boxes_.filled(box), view.course, allowed_for_new_rad(box, view));
@@ -327,9 +333,11 @@ float WalkCache::own_net_us(Index box, const PlanView& view) {
     if (frame_ < out_until_[box]) return 0;
     if (!(facts_[box].net_us > 0.0F) && !held_[box].any()) return 0;
     if (!options_.surround && !in_view_[box]) return 0;
-    serves_[box] = serves_on(box, view);
+    const float price_us = draw_us(box, view), worth_us = full_worth_us(box, view.us_per_value), net_us = worth_us - price_us;
+    pays_[box] = sure_share(view.picture_factor) * worth_us > (pays_[box] ? 1 - pays_band : 1 + pays_band) * price_us;
+    serves_[box] = pays_[box] && serves_on(box, view);
     if (!serves_[box]) return facts_[box].net_us;
-    return std::max(facts_[box].net_us, full_worth_us(box, view.us_per_value) - draw_us(box, view));
+    return std::max(facts_[box].net_us, net_us);
 }
 
 /// A picture that serves is drawn, whatever its children could have.
@@ -433,6 +441,7 @@ bool WalkCache::take(const CacheOffer& offer) {
     }
     const Slot slot = before.any() ? before.slot : slots_.take(texels).value_or(Slot{});
     held_[offer.box] = {offer.prospect.picture, offer.prospect.box, offer.prospect.grown_m, slot};
+    pays_[offer.box] = true;
     last_covered_[offer.box] = frame_;  // so that it is not dropped before a set may use it
     pending_.push_back({offer.box, before.until == 0 ? before : HeldPicture{}});
     return true;
