@@ -115,7 +115,8 @@ std::vector<Entry> light_entries() {
         flag("shadows", "Places that something hides from the sun are darker. A visitor may switch it (action shadows, key J).",
              &S::shadows),
         flag("lamps",
-             "By night, with an hour: light of lamps, at most 4096, and of what glows. A visitor may switch it (action lamps, key K).",
+             "By night, with an hour: light of lamps, at most 4096, and of what glows. A visitor may switch it (action lamps, "
+             "key K).",
              &S::lamps),
         flag("fog", "What is far takes the colour of the sky. A visitor may switch it (action fog, key H).", &S::fog),
         number("hour", "h", -1, 24, "Hour of the day that the light is of, by the sun; -1: the model's own light.", &S::hour),

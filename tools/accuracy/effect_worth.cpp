@@ -99,8 +99,9 @@ std::string along_path(const model::Model& m, const UseOfEffects& use, std::size
     if (called_for && (1U << bit & model::background_effects) != 0)
         return "It is drawn behind everything in every frame, and no item has it.";
     if (walked.frames_with[bit] == 0)
-        return fmt::format("No item has it in {} of {} frames: {}.", walked.frames, walked.frames,
-                           called_for ? "what has it is not in view, hidden, or in no form that was chosen" : "the model does not call for it");
+        return fmt::format(
+            "No item has it in {} of {} frames: {}.", walked.frames, walked.frames,
+            called_for ? "what has it is not in view, hidden, or in no form that was chosen" : "the model does not call for it");
     const model::Index rep = walked.first_rep[bit], node = node_of(m, rep);
     std::uint64_t with = 0;
     for (model::Index p = m.reps[rep].first_part; p < m.reps[rep].first_part + m.reps[rep].part_count; ++p)
