@@ -30,7 +30,7 @@ constexpr double min_rate_share = 1e-7;  // of the picture's value: a us is wort
 constexpr std::uint32_t first_picture_item = 1;  // of ItemKind::refresh; the shadow map is below
 constexpr std::size_t uncovered_chunk = 32;
 constexpr std::uint32_t timed_every = 8;  // frames with pictures
-constexpr double min_timed_us = 200;      // by the table; less says nothing
+constexpr double min_timed_us = 100;      // by the table; less says nothing
 constexpr double learnt_share = 0.5, min_picture_factor = 0.25, max_picture_factor = 8;
 constexpr double forgotten_share = 1.0 / 512;  // a frame, while nothing is timed: what did not pay is tried again
 constexpr double min_sample = 0.05;            // of the prediction; in less nothing was drawn
