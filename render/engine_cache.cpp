@@ -32,7 +32,7 @@ constexpr std::size_t uncovered_chunk = 32;
 constexpr std::uint32_t timed_every = 8;  // frames with pictures
 constexpr double min_timed_us = 100;      // by the table; less says nothing
 constexpr double learnt_share = 0.5, min_picture_factor = 0.25, max_picture_factor = 8;
-constexpr double forgotten_share = 1.0 / 512;  // a frame, while nothing is timed: what did not pay is tried again
+constexpr double forgotten_share = 1.0 / 512;  // a frame on the real clock: what did not pay is tried again
 constexpr double min_sample = 0.05;            // of the prediction; in less nothing was drawn
 
 double us_of(const model::FrameCombine& combine, const model::ItemCost& cost) {
@@ -415,10 +415,10 @@ std::vector<std::uint8_t> Engine::birds_eye(std::span<const cache::FrameBox> fra
 /// A frame's time is corrected as a whole, mostly by what forms take. So from time to time pictures are timed by themselves: all
 /// before them is waited for, and then they are.
 void Engine::Impl::draw_pictures(const SubmitLimits& limits, SubmitReport& report) {
+    const double table_us = report.pictures_us / picture_factor;
     if (limits.now_ns != nullptr) picture_factor += forgotten_share * (1 - picture_factor);
     if (shown_pictures.empty()) return;
     device->draws.plays();
-    const double table_us = report.pictures_us / picture_factor;
     const bool timed = limits.now_ns != nullptr && table_us > min_timed_us && ++picture_frames % timed_every == 0;
     if (timed) {
         device->end_slice();  // there may be none, and what clears the picture is before it
@@ -432,8 +432,10 @@ void Engine::Impl::draw_pictures(const SubmitLimits& limits, SubmitReport& repor
     ++report.slices;
     if (!timed) return;
     const double sample = (now_us(limits) - from_us) / (table_us * correction.factor);
-    if (std::isfinite(sample) && sample > min_sample)
-        picture_factor += learnt_share * (std::clamp(sample, min_picture_factor, max_picture_factor) - picture_factor);
+    if (!std::isfinite(sample) || !(sample > min_sample)) return;
+    const double lesser = std::min(sample, last_picture_sample);  // one frame that was interrupted says nothing
+    last_picture_sample = sample;
+    picture_factor += learnt_share * (std::clamp(lesser, min_picture_factor, max_picture_factor) - picture_factor);
 }
 
 }  // namespace surefoot

@@ -335,9 +335,10 @@ float WalkCache::own_net_us(Index box, const PlanView& view) {
     if (!options_.surround && !in_view_[box]) return 0;
     const float price_us = draw_us(box, view), worth_us = full_worth_us(box, view.us_per_value), net_us = worth_us - price_us;
     pays_[box] = sure_share(view.picture_factor) * worth_us > (pays_[box] ? 1 - pays_band : 1 + pays_band) * price_us;
-    serves_[box] = pays_[box] && serves_on(box, view);
-    if (!serves_[box]) return facts_[box].net_us;
-    return std::max(facts_[box].net_us, net_us);
+    const bool serves = serves_on(box, view);
+    serves_[box] = serves && pays_[box];
+    if (!serves) return facts_[box].net_us;
+    return pays_[box] ? std::max(facts_[box].net_us, net_us) : 0.0F;
 }
 
 /// A picture that serves is drawn, whatever its children could have.
@@ -402,7 +403,7 @@ std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
 }
 
 /// The box's own slot goes first, then the longest unused of those that no set relies on. False: there is no room; no
-/// picture goes, and it is noted as refused.
+/// picture goes. It may be noted as refused.
 bool WalkCache::find_room(Index box, std::uint32_t texels) {
     victims_.clear();
     if (held_[box].slot.texels == texels) return true;
@@ -468,15 +469,20 @@ void WalkCache::draw_below(Index i, const ViewPixels& pixels, const model::Frust
     const CacheBox& box = boxes_.tree().boxes[i];
     if (!relies_[i] || !model::visible(frustum, boxes_.filled(i))) return;
     const HeldPicture& held = held_[i];
-    if (held.any() && valid_around(held.picture, pixels.eye, 0, allowed_rad(i, held.box, pixels)) && !before_blended(held.box)) {
-        draws_.boxes.push_back(i);
-        draws_.value += static_cast<double>(value_[i].full);
-    } else if (box.child_count == 0) {
-        draws_.unserved.push_back(i);
-    } else {
+    const bool valid =
+        held.any() && valid_around(held.picture, pixels.eye, 0, allowed_rad(i, held.box, pixels)) && !before_blended(held.box);
+    if (box.child_count == 0 && !valid) draws_.unserved.push_back(i);
+    const std::size_t shown = draws_.boxes.size(), unserved = draws_.unserved.size();
+    const double value = draws_.value;
+    if (box.child_count > 0 && (!valid || !pays_[i]))
         back_to_front(boxes_.tree(), box.first_child, box.child_count, pixels.eye,
                       [&](Index child) { draw_below(child, pixels, frustum); });
-    }
+    // One that does not pay is drawn for a set that was told of it, where its children have none.
+    if (!valid || (box.child_count > 0 && !pays_[i] && draws_.unserved.size() == unserved)) return;
+    draws_.boxes.resize(shown);
+    draws_.unserved.resize(unserved);
+    draws_.boxes.push_back(i);
+    draws_.value = value + static_cast<double>(value_[i].full);
 }
 
 }  // namespace surefoot::cache

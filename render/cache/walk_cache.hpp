@@ -222,7 +222,7 @@ private:
     std::uint32_t no_room_for_ = 0;  ///< texels of a side, since plan(); 0: nothing failed
     std::vector<bool> serves_;       ///< by box: of the last plan()
     std::vector<bool> in_view_;      ///< the same
-    std::vector<bool> pays_;         ///< by box: its picture saves more than it takes, by the last plan() that had it in view
+    std::vector<bool> pays_;         ///< by box: its picture saves more than it takes, by the last plan() that looked at it
     std::vector<bool> relies_;       ///< by box: a set needs something below it
     std::vector<Refused> refused_;
     std::uint64_t tight_until_ = 0;                  ///< the frame until which offers must find room
