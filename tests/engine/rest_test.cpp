@@ -183,7 +183,8 @@ std::vector<std::uint8_t> grid_of_64(Walk& walk, const Pose& pose) {
     const auto items = walk.engine->full_detail(pose);
     std::vector<double> sum;
     for (int i = 0; i < 64; ++i) {
-        device.begin_rest(pose, {(i % 8 + 0.5) / 8 - 0.5, (i / 8 + 0.5) / 8 - 0.5});
+        const int column = i % 8, row = i / 8;
+        device.begin_rest(pose, {(column + 0.5) / 8 - 0.5, (row + 0.5) / 8 - 0.5});
         for (const auto parts : {gl::Parts::opaque, gl::Parts::blended}) device.draw_rest(items, parts);
         device.show_rest(1);
         device.finish_rest_frame();
