@@ -36,7 +36,7 @@ struct HeldPicture {
     Box box;          ///< grown, as it was captured
     double grown_m = 0;
     Slot slot;
-    std::uint64_t until = 0;  ///< the last frame that shows it, since it is forgotten; 0: it is not
+    std::uint64_t until = 0;  ///< the last frame that shows it, since it is forgotten or goes for another; 0: neither
     [[nodiscard]] bool any() const { return slot.texels > 0; }
 };
 
