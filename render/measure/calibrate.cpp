@@ -359,16 +359,17 @@ Result<void> Run::levers(Calibration& out) {
 }
 
 /// With and without each effect in turns; which one comes first changes as well. The median of the pairs' differences counts, and
-/// the largest of three rounds: some seconds show half of what an effect takes, and one that is priced too cheap makes frames
-/// late.
+/// the second largest of five rounds. Some seconds show half of what an effect takes, and one that is priced too cheap makes
+/// frames late. Other seconds show twice as much, and one of them alone must not count.
 Result<void> Run::prices(Calibration& out) {
-    const int pairs = options_.quick ? 9 : 21;
+    const int pairs = options_.quick ? 5 : 13;
+    constexpr std::size_t rounds = 5;
     const std::size_t cells = scene_.prices.size();
-    std::vector<PricePoint> points(cells);
-    for (std::size_t c = 0; c < 3 * cells; ++c) {  // three rounds: a bad second must not price an effect
+    std::vector<std::array<double, rounds>> submits(cells), rasters(cells);
+    for (std::size_t c = 0; c < rounds * cells; ++c) {
         const PriceCell& cell = scene_.prices[c % cells];
         if (progress_.stopped()) return stopped;
-        progress_.update("effects", static_cast<double>(c) / static_cast<double>(3 * cells));
+        progress_.update("effects", static_cast<double>(c) / static_cast<double>(rounds * cells));
         constexpr std::size_t slice = 1;  // far to near: what hides another's pixels would hide its price
         const auto count = static_cast<double>(cell.with.size());
         std::vector<double> submit, raster;
@@ -381,10 +382,17 @@ Result<void> Run::prices(Calibration& out) {
             submit.push_back((of[1].submit_us - of[0].submit_us) / count);
             raster.push_back((of[1].raster_us - of[0].raster_us) / count);
         }
-        PricePoint& point = points[c % cells];
-        if (c < cells) point = {cell.effect, cell.triangles, cell.pixels, 0, 0};
-        point.submit_us = std::max(point.submit_us, median_of(std::move(submit)));
-        point.raster_us = std::max(point.raster_us, median_of(std::move(raster)));
+        submits[c % cells][c / cells] = median_of(std::move(submit));
+        rasters[c % cells][c / cells] = median_of(std::move(raster));
+    }
+    const auto second_largest = [](std::array<double, rounds>& of) {
+        std::sort(of.begin(), of.end());
+        return std::max(0.0, of[rounds - 2]);
+    };
+    std::vector<PricePoint> points;
+    for (std::size_t c = 0; c < cells; ++c) {
+        const PriceCell& cell = scene_.prices[c];
+        points.push_back({cell.effect, cell.triangles, cell.pixels, second_largest(submits[c]), second_largest(rasters[c])});
     }
     out.costs.prices = fit_prices(points);
     out.costs.prices_measured = !out.costs.prices.empty();
