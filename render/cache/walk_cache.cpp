@@ -12,6 +12,7 @@ namespace {
 
 constexpr float min_saving_us = 5;          // less is not worth a picture
 constexpr double same_change_frames = 2;    // what is forgotten again so soon was forgotten for one reason
+constexpr double sooner_share = 0.25;       // of the usual time between two of them: nothing is expected sooner
 constexpr double min_life_frames = 4;       // for less, nothing is offered
 constexpr std::uint64_t tight_frames = 16;  // after room was missing, only what finds room is offered
 constexpr double rounded_down = 1 - 1e-6;   // errors are reported in float
@@ -83,11 +84,12 @@ void WalkCache::forget() {
     forgot_frame_ = frame_;
 }
 
-/// By how often pictures were forgotten lately. At least 1.
+/// By how often pictures were forgotten lately. The time is not known to the frame, so it is never close: what is seldom
+/// forgotten stops no pictures. At least 1.
 double WalkCache::frames_to_forget() const {
     const auto since = static_cast<double>(frame_ - forgot_frame_);
     if (!(since < 2 * forget_frames_)) return std::numeric_limits<double>::infinity();
-    return std::max(1.0, forget_frames_ - since);
+    return std::max({1.0, forget_frames_ - since, sooner_share * forget_frames_});
 }
 
 /// Error and texels that a picture of the box may have.
@@ -260,9 +262,8 @@ double WalkCache::allowed_for_new_rad(Index box, const PlanView& view) const {
 bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) const {
     const float saves_us = sure_share(view.picture_factor) * full_worth_us(box, view.us_per_value) - draw_us(box, view);
     if (!(saves_us > min_saving_us)) return false;
-    if (before_blended(boxes_.filled(box))) return false;
     const auto prospect = prospect_of(boxes_.filled(box), view.course, allowed_for_new_rad(box, view));
-    if (!prospect) return false;
+    if (!prospect || before_blended(prospect->box)) return false;
     offer.box = box;
     offer.prospect = *prospect;
     const double texels = prospect->picture.texels, per_m = texels / prospect->picture.side_m;

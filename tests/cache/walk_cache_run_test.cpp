@@ -41,8 +41,11 @@ model::Model cube_of_leaves() {
 /// A walk of a cache, and what is known of it from outside.
 class CacheRun {
 public:
-    CacheRun(std::uint64_t seed, bool surround, std::uint32_t layers)
-        : random_(seed), layers_(layers), board_(layers), cache_(boxes(), {.layers = layers, .surround = surround}) {
+    CacheRun(std::uint64_t seed, bool surround, std::uint32_t layers, std::vector<Box> blended = {})
+        : random_(seed),
+          layers_(layers),
+          board_(layers),
+          cache_(boxes(), {.layers = layers, .surround = surround}, std::move(blended)) {
         slots_.resize(cache_.boxes().size());
     }
     [[nodiscard]] std::uint64_t refreshes() const { return refreshes_; }
@@ -86,9 +89,20 @@ public:
         return in_step();
     }
 
+    /// Pictures that no set is told of, though they were captured here.
+    [[nodiscard]] std::uint64_t idle() {
+        const model::CoverBits& covered = cache_.cover(view_pixels(pose(), viewport, 0.2), off_course_m);
+        std::uint64_t count = 0;
+        for (Index i = 0; i < slots_.size(); ++i) count += cache_.held(i).any() && !covered[i] ? 1 : 0;
+        return count;
+    }
+    void light_changes() { cache_.forget(); }
+    void drop_all() {
+        for (Index i = 0; i < slots_.size(); ++i) cache_.drop(i);
+    }
     /// All goes, and every layer is whole again.
     bool ends_empty() {
-        for (Index i = 0; i < slots_.size(); ++i) cache_.drop(i);
+        drop_all();
         if (!in_step() || cache_.bytes() != 0) return false;
         CacheOffer offer;
         offer.prospect.picture.texels = max_slot_texels;
@@ -217,6 +231,34 @@ TEST(WalkCacheRun, WhereTheEyeStaysNoPictureIsMadeTwice) {
             }
             EXPECT_GT(run.refreshes(), 25 * layers) << "more than find room";
         }
+    }
+}
+
+/// None may stand before what is transparent. So none is made that would: its box is grown by a pixel.
+TEST(WalkCacheRun, BesideWhatIsTransparentNoPictureIsMadeInVain) {
+    Random random(3);
+    std::vector<Box> blended;
+    for (int i = 0; i < 60; ++i) {
+        const dvec3 at = any_in(random, dvec3(2 * side_m, -side_m, -side_m), dvec3(3 * side_m, 2 * side_m, 2 * side_m));
+        blended.emplace_back(at, at + dvec3(0.5));
+    }
+    CacheRun run(7, false, 24, blended);
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(run.stand()) << i;
+    EXPECT_GT(run.refreshes(), 10U);
+    EXPECT_EQ(run.idle(), 0U);
+}
+
+/// What was forgotten once after a while is not expected to be forgotten again just then.
+TEST(WalkCacheRun, OneChangeOfTheLightStopsNoPicturesLater) {
+    CacheRun run(7, false, 24);
+    for (int i = 0; i < 200; ++i) ASSERT_TRUE(run.stand()) << i;
+    run.light_changes();
+    for (int i = 0; i < 198; ++i) ASSERT_TRUE(run.stand()) << i;
+    for (int after = 0; after < 8; ++after) {  // 198 to 398 frames after that
+        const std::uint64_t made = run.refreshes();
+        run.drop_all();
+        for (int i = 0; i < 25; ++i) ASSERT_TRUE(run.stand()) << i;
+        EXPECT_GT(run.refreshes(), made) << after;
     }
 }
 

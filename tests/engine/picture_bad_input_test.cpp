@@ -2,6 +2,7 @@
 // it. Nothing is ever missing.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -131,13 +132,17 @@ TEST(PictureBadInput, FlatThingsHavePicturesAndLeaveNoHole) {
 }
 
 TEST(PictureBadInput, OneTriangleAndOneBoxAreDrawn) {
-    for (const importer::Scene& scene : {one_triangle(), one_thing(bake::ball(16, 1))}) {
+    const std::array scenes = {one_triangle(), one_thing(bake::ball(16, 1)), one_thing(bake::ball(160, 1))};
+    for (const importer::Scene& scene : scenes) {
         const model::Model model = baked(scene);
         for (const bool all_round : {false, true}) {
             PictureWalk walk(model, {.layers = 1, .all_round = all_round});
             EXPECT_TRUE(walk.engine().has_pictures()) << walk.engine().picture_reason();
             Pose pose = before(walk.engine(), 15);
-            walk_past(walk, pose);
+            const std::size_t shown = walk_past(walk, pose);
+            if (&scene == &scenes.back()) {
+                EXPECT_EQ(shown, 1U) << "the others take less time than a picture";
+            }
             for (const dvec3& eye : {dvec3(0), dvec3(0.25, 0.25, 0), dvec3(0, 0, -3), dvec3(1e7, 0, 0)}) {
                 Pose there = pose;
                 there.position = eye;
@@ -155,6 +160,10 @@ TEST(PictureBadInput, ACacheThatIsTooSmallLeavesNoHole) {
         PictureWalk walk(model, {.layers = layers, .viewport = {1280, 720}});
         Pose pose = before(walk.engine(), 12);
         EXPECT_LE(walk_past(walk, pose), layers * 16U);
+        pose = before(walk.engine(), 60);
+        const std::size_t shown = walk_past(walk, pose);
+        EXPECT_LE(shown, layers * 16U);
+        EXPECT_EQ(shown > 0, layers > 0);
     }
 }
 

@@ -138,20 +138,28 @@ TEST(PictureCache, NoPictureIsMadeWhereTheLightChangesBeforeItPays) {
 /// The price of what pictures cannot show any more, beside what was bought, is over the frame's limit: the frame is one without
 /// a prepared set.
 TEST(PictureCache, TooMuchInPlaceOfPicturesIsDrawnAsWithoutASet) {
-    const auto after_jump = [](double limit_us) {
-        PictureWalk walk(test::forest_model(), {});
+    struct Jump {
+        SubmitReport report;
+        std::vector<model::Index> holes;
+    };
+    const auto after_jump = [](std::uint32_t layers, double limit_us) {
+        PictureWalk walk(test::forest_model(), {.layers = layers});
         Pose pose;
         for (int i = 0; i < 8; ++i) walk.frame(pose = along(walk.engine(), i));
         pose.position.x += 25;
         walk.engine().device().draws.plays();
         walk.engine().select(walk.set(), test::ample_us, {}, 0);
-        return walk.engine().submit(pose, {.elapsed_us = 0, .limit_us = limit_us});
+        const SubmitReport report = walk.engine().submit(pose, {.elapsed_us = 0, .limit_us = limit_us});
+        return Jump{report, holes(walk.engine(), pose)};
     };
-    const SubmitReport all = after_jump(test::ample_us);
+    const Jump with = after_jump(64, test::ample_us), without = after_jump(0, test::ample_us);
+    EXPECT_EQ(with.holes, without.holes) << "what the set of the other place did not see";
+    const SubmitReport all = with.report;
     const double all_us = all.predicted_us;
     EXPECT_GT(all.captures_us, 0) << "something was bought";
     for (const double share : {0.3, 0.35, 0.4}) {
-        const SubmitReport report = after_jump(share * all_us);
+        const auto [report, missing] = after_jump(64, share * all_us);
+        EXPECT_TRUE(missing.empty()) << share;
         EXPECT_GT(report.uncovered_items, 0U);
         EXPECT_LE(report.predicted_us, share * all_us) << share;
         EXPECT_EQ(report.captures_us, 0) << share;
