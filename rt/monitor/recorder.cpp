@@ -1,6 +1,7 @@
 // The monitor thread.
 #include "rt/monitor/recorder.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "rt/threads/placement.hpp"
@@ -42,7 +43,8 @@ void Recorder::run() {
 }
 
 bool Recorder::stopping_before_next_poll() {
-    const auto next = std::chrono::steady_clock::now() + std::chrono::nanoseconds(options_.poll_ns);
+    const std::int64_t poll_ns = any_came_ ? options_.poll_ns : std::min(options_.poll_ns, options_.first_poll_ns);
+    const auto next = std::chrono::steady_clock::now() + std::chrono::nanoseconds(poll_ns);
     const MutexLock lock(mutex_);
     while (!stopping_ && stop_.wait_until(mutex_, next)) {
     }
@@ -54,6 +56,7 @@ void Recorder::drain() {
         FrameRecord popped;
         batch_.clear();
         while (batch_.size() < max_batch && ring_.try_pop(popped)) batch_.push_back(popped);
+        any_came_ = any_came_ || !batch_.empty();
         if (options_.on_batch) options_.on_batch(batch_);
         for (const FrameRecord& record : batch_) {
             if (options_.keep) records_.push_back(record);

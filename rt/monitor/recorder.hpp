@@ -16,9 +16,10 @@ namespace surefoot::rt {
 
 /// Settings of the recorder.
 struct RecorderOptions {
-    std::size_t reserve_records = 36000;  ///< more are kept too, but memory grows then
-    bool keep = true;                     ///< false: records only go to on_record (a walk without end)
-    std::int64_t poll_ns = 500'000'000;   ///< how often the ring is emptied: a wake-up costs 15 to 150 us of CPU, a record 1
+    std::size_t reserve_records = 36000;      ///< more are kept too, but memory grows then
+    bool keep = true;                         ///< false: records only go to on_record (a walk without end)
+    std::int64_t poll_ns = 500'000'000;       ///< how often the ring is emptied: a wake-up costs 15 to 150 us of CPU, a record 1
+    std::int64_t first_poll_ns = 20'000'000;  ///< the same until the first record came: who waits for a first frame hears of it
     std::string thread_name = "sf-monitor";
     /// On the monitor thread, each time the ring was emptied, also of nothing: the new records, before they are kept. May be
     /// empty.
@@ -47,6 +48,7 @@ private:
     SpscRing<FrameRecord>& ring_;
     RecorderOptions options_;
     std::vector<FrameRecord> records_, batch_;
+    bool any_came_ = false;
     Mutex mutex_;
     Condition stop_;
     bool stopping_ GUARDED_BY(mutex_) = false;

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <latch>
 #include <thread>
 
+#include "rt/base/mutex.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/monitor/recorder.hpp"
 #include "rt/threads/usage.hpp"
@@ -124,14 +126,39 @@ void read_core_steal(Session& s) {
     s.steal->read(begun_ns, steal ? std::span<const double>(steal->cpu_ms) : std::span<const double>());
 }
 
+/// The end of the frame loop: its thread says so, and the supervising one waits for it.
+class LoopEnd {
+public:
+    void set() {
+        {
+            const MutexLock lock(mutex_);
+            ended_ = true;
+        }
+        changed_.notify_all();
+    }
+    /// False: it has not ended within so long.
+    bool within(std::chrono::milliseconds time) {
+        const auto until = std::chrono::steady_clock::now() + time;
+        const MutexLock lock(mutex_);
+        while (!ended_ && changed_.wait_until(mutex_, until)) {
+        }
+        return ended_;
+    }
+
+private:
+    Mutex mutex_;
+    Condition changed_;
+    bool ended_ GUARDED_BY(mutex_) = false;
+};
+
 /// While the frame thread walks: serves the input, reports progress, and counts the threads once all have started.
-void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, const Progress& progress) {
+void supervise(Session& s, rt::Clock& clock, LoopEnd& end, const Progress& progress) {
     bool counted = s.virtual_clock;
     constexpr std::int64_t steal_every_ns = 95'000'000;  // so long do frames share a reading
     std::int64_t steal_read_ns = 0;
     const int look_ms = s.virtual_clock ? 5 : s.input && s.input->live() ? 10 : 100;
-    while (!done.load()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
+    for (bool ended = false; !ended;) {
+        ended = end.within(std::chrono::milliseconds(look_ms));  // and looks once more then
         if (s.input) s.input->poll(progress, s.notes);
         notify_screen(s, progress);
         notify_input(s);
@@ -183,7 +210,7 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     }
     PoseSource& pose_source = s.input ? s.input->poses() : static_cast<PoseSource&>(path_poses);
     if (s.virtual_clock) notify_started(s);
-    std::atomic<bool> done{false};
+    LoopEnd end;
     std::optional<Error> misplaced;  // the frame thread's until it is in place
     std::latch in_place(1);
     std::thread frame_thread([&] {
@@ -203,11 +230,11 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
         stages.rehearse(s.grid.t0_ns);
         s.burn_ns = rt::run_frame_loop(options, clock, stages, ring).burn_ns;
         s.engine->device().release();
-        done.store(true);
+        end.set();
     });
     in_place.wait();
     if (!s.virtual_clock) notify_started(s);
-    supervise(s, clock, done, progress);
+    supervise(s, clock, end, progress);
     frame_thread.join();
     notify_screen(s, progress);
     notify_missed_frame(s);
