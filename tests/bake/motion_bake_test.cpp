@@ -87,14 +87,14 @@ TEST(MotionBake, BoxesAreNotMuchLargerThanTheWay) {
 
 /// Full detail as it is at a time, and each form of each node above what moves: no point of the one is farther from the other
 /// than the form's error.
-TEST(MotionBake, ErrorsHoldAtRandomTimes) {
+void expect_errors_hold(int times, std::uint64_t seed) {
     const model::Model& m = moving_model();
     std::set<Index> nodes;
     for (const Index leaf : moving_leaves(m))
         for (Index n = leaf; n != model::none; n = m.nodes[n].parent) nodes.insert(n);
-    Random random(5);
-    std::size_t judged = 0;
-    for (int round = 0; round < 6; ++round) {
+    Random random(seed);
+    int judged = 0;
+    for (int round = 0; round < times; ++round) {
         const double t = 40 * random.unit();
         model::Model now = m;
         for (model::Placement& p : now.placements) p = model::moved(p, model::pose_at(m, p.motion, t));
@@ -105,8 +105,12 @@ TEST(MotionBake, ErrorsHoldAtRandomTimes) {
             }
         }
     }
-    EXPECT_GT(judged, 60U);
+    EXPECT_GT(judged, 10 * times);
 }
+
+TEST(MotionBake, ErrorsHoldAtRandomTimes) { expect_errors_hold(6, 5); }
+
+TEST(MotionBakeAtNight, ErrorsHoldAtHundredsOfRandomTimes) { expect_errors_hold(300, 6); }
 
 TEST(MotionBake, FormsAboveStandAtRestAndTheirErrorSaysHowFarOffThatIs) {
     const model::Model& m = moving_model();
