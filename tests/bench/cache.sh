@@ -19,8 +19,8 @@ cache_walk() { # LABEL KEEPS
   unload
   (( status == 0 )) || return 0
   if [[ -z "$pairs" ]]; then
-    judged cache "$scene" "" "${of[@]}"
-    keep cache_load "$(percent control.other_miss_share 3)" --scene "$scene" "${of[@]}"
+    judged deadline "$scene" "" "${of[@]}"
+    keep deadline_load "$(percent control.other_miss_share 3)" --scene "$scene" "${of[@]}"
   fi
   measure "refreshes $label" awk -v period_ms="$(awk "BEGIN { print 1000 / $cache_rate }")" -f "$bench/refreshes.awk" "$work/cache-$label.csv" || return 0
   echo "tests/bench/run: $scene: $(cat "$work/raw/refreshes-$label.json")" >&2
