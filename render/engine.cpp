@@ -53,7 +53,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->options.resolution = model::stepped(options.resolution);
     if (impl->options.resolution > 0.0F) impl->drawn_resolution = impl->options.resolution;
     impl->options.device.smaller = impl->options.resolution < 1.0F;
-    auto device = gl::open_device(impl->options.device);
+    auto device = gl::open_device(impl->with_light_groups());
     if (!device) return device.error();
     impl->device = std::move(*device);
     impl->device->draws.plays();
@@ -87,6 +87,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     if (impl->device->receives_shadows()) impl->shadow = MovingShadow(impl->model);
     impl->make_pictures();
     impl->light = model::daylight_of_model(impl->model.sun_direction, impl->model.light);
+    impl->leave_out_unlit();
     const std::size_t in_pictures = impl->pictures.any() ? impl->model.nodes.size() : 0;
     const std::size_t max_drawn = std::max<std::size_t>(candidates * 2 + in_pictures, impl->unprepared.capacity());
     impl->drawn.reserve(max_drawn);
@@ -308,7 +309,8 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.take_effects(prepared);
     e.take_shadow();
     e.take_pictures();
-    if (e.filtered || e.lever.shown != 0) e.price_slices();
+    e.price_light_change(prepared);
+    if (e.filtered || (e.lever.shown | e.priced_late | e.priced_early) != 0) e.price_slices();
     return e.cut;
 }
 
@@ -323,8 +325,7 @@ void Engine::hide_effects(model::EffectMask hidden) {
     if (hidden == e.hidden) return;
     e.device->draws.plays();
     e.hidden = hidden;
-    e.price_without();
-    e.device->hide_effects(hidden);
+    e.leave_out_unlit();
     e.watch.forget();
     e.rest_picture.leave();
 }
@@ -337,6 +338,7 @@ void Engine::set_light(const model::Daylight& light, float hour) {
     e.device->set_light(light);
     if (!(light == e.light)) e.pictures.forget();
     e.light = light;
+    e.leave_out_unlit();
     e.watch.forget();
     e.rest_picture.leave();
 }
@@ -385,7 +387,7 @@ void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> ite
     impl_->rest_picture.leave();
     device.show_shadow(std::exchange(impl_->shadow_unbudgeted, false));
     device.set_filter(filter == rt::TextureFilter::automatic ? impl_->best_filter : filter);
-    device.hide_effects(impl_->hidden);
+    device.hide_effects(impl_->always_without());
     impl_->make_pictures_anew(pose, pictures);
     impl_->draw_items(pose, items, resolution);
     if (!impl_->anew.empty()) {

@@ -41,10 +41,38 @@ void Engine::Impl::reserve_effects() {
     worth = EffectWorth(model, lever.all(), options.effect_hours, options.device.sky);
 }
 
-/// Which effects the next sets have no price of: those that a visitor switched off, and all that frames buy.
+/// Which effects the next sets have no price of: what pictures are drawn without, and all that frames buy.
 void Engine::Impl::price_without() {
     const model::EffectMask bought = by_budget ? lever.every() : 0;
-    without.store(gl::left_out(options.device.switches, hidden) | bought, std::memory_order_relaxed);
+    without.store(always_without() | bought, std::memory_order_relaxed);
+}
+
+/// What a light may leave without anything to show gets switches of its own, as far as the device has room for them. Those of
+/// the options stay apart: they alone are hidden by hide_effects(), and bought.
+gl::DeviceOptions Engine::Impl::with_light_groups() {
+    gl::DeviceOptions out = options.device;
+    for (const model::EffectMask group : effects::groups_by_light(model.called_for())) {
+        const bool has = std::find(out.switches.begin(), out.switches.end(), group) != out.switches.end();
+        if (!has && out.switches.size() >= gl::max_switches) continue;
+        if (!has) out.switches.push_back(group);
+        by_light |= group;
+    }
+    return out;
+}
+
+/// After a change of switches or of the light.
+void Engine::Impl::leave_out_unlit() {
+    unlit = by_light & effects::without_effect_in(light);
+    price_without();
+    device->draws.plays();
+    device->hide_effects(always_without());
+}
+
+/// A set from before a change of the light has other prices than what is drawn now.
+void Engine::Impl::price_light_change(const prepare::PreparedFrame& set) {
+    const model::EffectMask bought = by_budget ? lever.every() : 0, off = drawn_without();
+    priced_late = by_light & set.without & ~off & ~bought;
+    priced_early = by_light & off & ~set.without;
 }
 
 namespace {
@@ -64,7 +92,7 @@ model::ItemCost Engine::Impl::effects_of(model::Index rep, float surface_px, mod
 /// What costs the group's time: without what another switch left out of it.
 model::EffectMask Engine::Impl::priced_now(std::size_t g) const {
     const EffectGroup& group = lever.groups[g];
-    return group.own | (group.priced & ~gl::left_out(options.device.switches, hidden));
+    return group.own | (group.priced & ~always_without());
 }
 
 /// By the forms of the last cut: a frame shows much of what the last one showed. Before there was one, by full detail.
@@ -86,7 +114,7 @@ void Engine::Impl::share_budget(const prepare::PreparedFrame& set, double room_u
     const float forms_us = more_us(combine, {}, lever.forms), full_us = more_us(combine, {}, set.full_cost);
     float all = 1;
     for (std::size_t g = 0; g < lever.count; ++g) {
-        const bool for_sale = (lever.groups[g].own & ~hidden) != 0 && by_budget && set.effect_value[g] > 0.0F;
+        const bool for_sale = may_show(g) && by_budget && set.effect_value[g] > 0.0F;
         lever.offered_us[g] = for_sale && forms_us > 0.0F ? more_us(combine, lever.forms, lever.costs[g]) / forms_us : 0.0F;
         all += lever.offered_us[g];
     }
@@ -121,13 +149,13 @@ void Engine::Impl::take_effects(const prepare::PreparedFrame& set) {
     lever.spent_us = 0;
     std::array<bool, prepare::max_effect_groups> shows{};
     for (std::size_t g = 0; g < lever.count; ++g) {
-        if (!by_budget || (lever.groups[g].own & ~hidden) == 0) continue;
+        if (!by_budget || !may_show(g)) continue;
         shows[g] = lever.offered_us[g] > 0.0F ? was_bought({select::ItemKind::effect, lever.groups[g].mask})
                                               : !(more_us(combine(), lever.forms, lever.costs[g]) > 0.0F);
         if (!shows[g]) lever.left_out |= lever.groups[g].mask;
     }
     for (std::size_t g = 0; g < lever.count; ++g) {
-        if (!by_budget || (lever.groups[g].own & ~hidden) == 0) continue;
+        if (!by_budget || !may_show(g)) continue;
         const EffectGroup& group = lever.groups[g];
         EffectSale& sale = lever.sales[g];
         shows[g] = shows[g] && (group.own & ~lever.left_out) != 0;  // shadows go with the sun
@@ -140,7 +168,7 @@ void Engine::Impl::take_effects(const prepare::PreparedFrame& set) {
         }
         if (shows[g]) lever.shown |= group.priced;
     }
-    lever.shown &= ~(lever.left_out | hidden) & set.without;
+    lever.shown &= ~(lever.left_out | hidden | unlit) & set.without;
     learn_effects();
 }
 

@@ -1,6 +1,7 @@
 // What an engine owns and what its submission shares: private to engine.cpp and engine_submit.cpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -33,6 +34,11 @@ struct UncoveredItem {
     model::ItemCost full_cost, coarse_cost;
     float pixels = 0, distance_m = 0;
 };
+
+/// What is left of a cost; at least nothing.
+inline model::ItemCost less(const model::ItemCost& cost, const model::ItemCost& off) {
+    return {std::max(0.0F, cost.submit_us - off.submit_us), std::max(0.0F, cost.raster_us - off.raster_us)};
+}
 
 /// The engine itself. prepare() runs on a worker; what GUARDED_BY(draws) marks belongs to the thread that draws.
 struct Engine::Impl {
@@ -111,7 +117,11 @@ struct Engine::Impl {
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
-    model::EffectMask hidden GUARDED_BY(draws) = 0;  ///< by switches
+    model::EffectMask hidden GUARDED_BY(draws) = 0;       ///< by switches
+    model::EffectMask by_light = 0;                       ///< that the device can leave out where the light shows nothing of them
+    model::EffectMask unlit GUARDED_BY(draws) = 0;        ///< of by_light: those that show nothing now
+    model::EffectMask priced_late GUARDED_BY(draws) = 0;  ///< of by_light: drawn, and not in the prices of the cut's set
+    model::EffectMask priced_early GUARDED_BY(draws) = 0;  ///< of by_light: in these prices, and not drawn any more
     EffectLever lever GUARDED_BY(draws);
     EffectWorth worth;                           ///< of the thread that prepares; empty where no effects are bought
     std::atomic<model::EffectMask> without = 0;  ///< PreparedFrame::without of the next sets
@@ -162,17 +172,27 @@ struct Engine::Impl {
     void offer_effects(const prepare::PreparedFrame& set, double room_us) REQUIRES(draws);
     void take_effects(const prepare::PreparedFrame& set) REQUIRES(draws);
     void learn_effects() REQUIRES(draws);
+    /// Whether a group has anything that is switched on and shows in this light.
+    [[nodiscard]] bool may_show(std::size_t g) const REQUIRES(draws) { return (lever.groups[g].own & ~(hidden | unlit)) != 0; }
     void price_slices() REQUIRES(draws);
+    [[nodiscard]] gl::DeviceOptions with_light_groups();
+    void leave_out_unlit() REQUIRES(draws);
+    void price_light_change(const prepare::PreparedFrame& set) REQUIRES(draws);
+    /// Effects that all pictures are drawn without: what is switched off, and what shows nothing in their light.
+    [[nodiscard]] model::EffectMask always_without() const REQUIRES(draws) {
+        return gl::left_out(options.device.switches, hidden) | unlit;
+    }
     /// Effects that a cut's pictures are drawn without.
     [[nodiscard]] model::EffectMask drawn_without() const REQUIRES(draws) {
-        return gl::left_out(options.device.switches, hidden | lever.left_out);
+        return gl::left_out(options.device.switches, hidden | lever.left_out) | unlit;
     }
     [[nodiscard]] bool was_bought(const select::ItemName& name) const REQUIRES(draws);
     [[nodiscard]] model::ItemCost effects_of(model::Index rep, float surface_px, model::EffectMask effects) const REQUIRES(draws);
     /// What the choice costs as it is drawn: with the second mip level and with the effects that were bought.
     [[nodiscard]] model::ItemCost drawn_cost(const prepare::Choice& choice) const REQUIRES(draws) {
         model::ItemCost cost = choice.cost;
-        if (lever.shown != 0) cost += effects_of(choice.rep, choice.surface_px, lever.shown);
+        if ((lever.shown | priced_late) != 0) cost += effects_of(choice.rep, choice.surface_px, lever.shown | priced_late);
+        if (priced_early != 0) cost = less(cost, effects_of(choice.rep, choice.surface_px, priced_early));
         return filtered && !use_last ? filter_costs.with(choice.rep, cost) : cost;
     }
     [[nodiscard]] select::FrameProfile& profile() REQUIRES(draws) { return profiles[model::resolution_step(drawn_resolution)]; }

@@ -51,7 +51,7 @@ void Engine::Impl::begin_shadow(const Pose& pose, SubmitReport& report) {
 bool Engine::refresh_shadow(const Pose& pose) {
     Impl& e = *impl_;
     e.draws.plays();
-    if ((gl::left_out(e.options.device.switches, e.hidden) & model::effect_moving_shadow) != 0 || !e.shadow.any() ||
+    if ((e.always_without() & model::effect_moving_shadow) != 0 || !e.shadow.any() ||
         !e.shadow.plan(e.shadow_scene(), {pose, e.options.device.viewport}))
         return false;
     e.device->draws.plays();

@@ -246,16 +246,10 @@ bool Engine::Impl::submit_rest(const Pose& pose, const SubmitLimits& limits, Sub
         report.pictures_made = report.uncovered_items = 0;
         report.pictures_reused = report.pictures;
         report.pictures_us = report.captures_us = 0;
-        const RestScene scene{model,
-                              preparer->item_costs(),
-                              costs,
-                              *device,
-                              options.device.viewport,
-                              options.slice_us,
-                              filter_costs,
-                              best_filter,
-                              gl::left_out(options.device.switches, hidden)};
-        if (lever.count > 0) device->hide_effects(hidden);  // full detail has the time for all of them
+        const RestScene scene{
+            model,       preparer->item_costs(), costs, *device, options.device.viewport, options.slice_us, filter_costs,
+            best_filter, always_without()};
+        if (lever.count > 0) device->hide_effects(always_without());  // full detail has the time for all others
         if (rest_picture.frame(scene, pose, limits, correction.factor, report)) return true;
         report = {};
     } else {
@@ -284,7 +278,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.begin_pictures(pose, limits, report);
     e.count_boxes(report);
     e.device->set_filter(e.filtered && !e.use_last ? e.best_filter : e.device->filter());
-    if (e.lever.count > 0) e.device->hide_effects(e.hidden | e.lever.left_out);
+    if (e.lever.count > 0) e.device->hide_effects(e.drawn_without());
     e.begin_shadow(pose, report);
     const double begins_us = e.now_us(limits);
     e.device->begin_frame(pose, e.drawn_resolution);

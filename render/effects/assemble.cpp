@@ -178,6 +178,29 @@ bool hides_by_depth(model::EffectMask mask) {
     return std::ranges::any_of(all_effects(), [&](const EffectModule& m) { return m.hides_by_depth && (mask & m.bit) != 0; });
 }
 
+std::vector<model::EffectMask> groups_by_light(model::EffectMask mask) {
+    std::vector<model::EffectMask> groups;
+    std::vector<decltype(EffectModule::shows_nothing)> of_group;
+    for (const EffectModule& module : all_effects()) {
+        if (module.shows_nothing == nullptr || (mask & module.bit) == 0) continue;
+        const auto same = std::find(of_group.begin(), of_group.end(), module.shows_nothing);
+        const auto at = static_cast<std::size_t>(same - of_group.begin());
+        if (same == of_group.end()) {
+            of_group.push_back(module.shows_nothing);
+            groups.push_back(0);
+        }
+        groups[at] |= module.bit;
+    }
+    return groups;
+}
+
+model::EffectMask without_effect_in(const model::Daylight& light) {
+    model::EffectMask mask = 0;
+    for (const EffectModule& module : all_effects())
+        if (module.shows_nothing != nullptr && module.shows_nothing(light)) mask |= module.bit;
+    return mask;
+}
+
 std::string effects_text(model::EffectMask mask, std::string_view between) {
     std::string text;
     for (const EffectModule& module : all_effects()) {

@@ -80,6 +80,9 @@ struct EffectModule {
     void (*light)(const SurfacePoint& point, const model::Daylight& of_moment, SurfaceLight& out) = nullptr;
     bool moves = false;           ///< its picture changes with the time
     bool hides_by_depth = false;  ///< its worth: what is far shows the colour behind everything instead of its own
+    /// Whether pictures in this light are the same to the bit without it. Null: it may always show something. Effects with the
+    /// same function go together.
+    bool (*shows_nothing)(const model::Daylight& light) = nullptr;
 
     /// Whether such a material may have it too, with the same picture. Null: no material may.
     bool (*changes_nothing)(const MaterialUse& material) = nullptr;
@@ -96,6 +99,10 @@ model::EffectMask called_for_by(const SceneFacts& scene);
 model::EffectMask moving_effects();
 /// Whether any effect of the mask hides by depth.
 bool hides_by_depth(model::EffectMask mask);
+/// Of these effects, the groups that show nothing in some lights: those of a group in the same ones.
+std::vector<model::EffectMask> groups_by_light(model::EffectMask mask);
+/// All effects that show nothing in this light.
+model::EffectMask without_effect_in(const model::Daylight& light);
 /// The usual prices of those that have one, in bit order.
 std::vector<model::EffectPrice> usual_prices();
 /// "texture sun", or "bare".

@@ -36,6 +36,7 @@ constexpr EffectModule lamps{
     .priced_on = model::effect_texture | model::effect_sun,
     .usual_price = {model::effect_lamps, 2.2F, 0.7F, 0},
     .light = light_by_lamps,
+    .shows_nothing = [](const model::Daylight& light) { return light.lamp_strength == 0.0F; },
     .changes_nothing =  // no lamp reaches its vertices
     [](const MaterialUse& material) { return (material.effects & (model::effect_sun | model::effect_openness)) != 0; },
     .not_everywhere = "light would change materials without it",

@@ -27,6 +27,9 @@ inline constexpr std::array<const EffectModule*, model::effect_count> registry{
     &openness_module,      &shadow_module,         &lamps_module, &fog_module,        &water_module,
     &moving_shadow_module, &light_by_pixel_module, &sky_module,   &lit_picture_module};
 
+/// EffectModule::shows_nothing of all that only takes the sun's own part of the light.
+inline bool sun_is_black(const model::Daylight& light) { return light.sun_light == vec3(0.0F); }
+
 /// Writes a uniform of type vec3.
 constexpr void put(const vec3& value, float* to) {
     for (int i = 0; i < 3; ++i) to[i] = value[i];

@@ -42,6 +42,7 @@ constexpr EffectModule moving_shadow{
     .order = 8,
     .priced_on = model::effect_texture | model::effect_sun,
     .usual_price = {model::effect_moving_shadow, 2.0F, 1.0F, 0.8F},
+    .shows_nothing = sun_is_black,
     .not_everywhere = "light would change materials without it",
 };
 const EffectModule moving_shadow_module = moving_shadow;

@@ -38,6 +38,7 @@ constexpr EffectModule shadow{
     .priced_on = model::effect_texture | model::effect_sun,
     .usual_price = {model::effect_shadow, 0.9F, 0, 0},
     .light = take_shadow,
+    .shows_nothing = sun_is_black,
     .changes_nothing =  // its vertices see the sun all day
     [](const MaterialUse& material) { return (material.effects & model::effect_sun) != 0; },
     .not_everywhere = "light would change materials without it",
