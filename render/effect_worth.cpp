@@ -293,7 +293,7 @@ EffectWorth::Between EffectWorth::known_around(const Between& wanted, double hou
     return {later ? after : before, later ? after : before, 0.0F};
 }
 
-std::array<prepare::EffectLoss, prepare::max_effect_groups> EffectWorth::at(float hour) {
+std::array<prepare::EffectLoss, prepare::max_effect_groups> EffectWorth::at(float hour, model::EffectMask without) {
     std::array<prepare::EffectLoss, prepare::max_effect_groups> out{};
     if (!any()) return out;
     const double now = std::isfinite(hour) ? static_cast<double>(hour) : 0.0;
@@ -301,9 +301,12 @@ std::array<prepare::EffectLoss, prepare::max_effect_groups> EffectWorth::at(floa
     follow(now);
     work(wanted);
     const Between shown = known_around(wanted, now);
-    for (std::size_t g = 0; g < groups_.size(); ++g)
-        out[g] = {losses_of(shown.before, g), losses_of(shown.after, g), shown.share, effects::hides_by_depth(groups_[g].own),
-                  moments_.front().fog_density};
+    const bool clear = effects::hides_by_depth(without);
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const bool is_fog = effects::hides_by_depth(groups_[g].own);
+        out[g] = {losses_of(shown.before, g), losses_of(shown.after, g), shown.share, is_fog,
+                  clear && !is_fog ? 0.0F : moments_.front().fog_density};
+    }
     return out;
 }
 

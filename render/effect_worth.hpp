@@ -39,9 +39,10 @@ public:
                 const std::array<float, 3>& sky);
 
     /// What the groups lose at an hour; no number: the first light. The first call works out whole lights, which takes a while.
+    /// `without`: effects that pictures are drawn without. Where fog is one, it takes nothing from what others show.
     /// The spans live as long as this. One thread at a time.
     /// Allocates nothing.
-    [[nodiscard]] std::array<prepare::EffectLoss, prepare::max_effect_groups> at(float hour);
+    [[nodiscard]] std::array<prepare::EffectLoss, prepare::max_effect_groups> at(float hour, model::EffectMask without = 0);
     [[nodiscard]] bool any() const { return !losses_.empty(); }
 
 private:

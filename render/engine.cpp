@@ -151,7 +151,9 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     out.to_s = impl_->options.motion ? hints.time_s + hints.span_s : 0;
     out.without = e.without.load(std::memory_order_relaxed);
     out.covered = hints.covered;
-    if (e.worth.any()) e.preparer->set_effect_losses(e.worth.at(e.light_hour.load(std::memory_order_relaxed)));
+    if (e.worth.any())
+        e.preparer->set_effect_losses(
+            e.worth.at(e.light_hour.load(std::memory_order_relaxed), e.unseen.load(std::memory_order_relaxed)));
     e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out);
     out.full_filter_us = e.filter_costs.any() ? e.filter_costs.full_us(out) : 0.0F;
     if (!chosen || !(hints.planned_us[0] > 0.0) || e.options.prepare.full_depth) return;

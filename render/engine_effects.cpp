@@ -64,6 +64,7 @@ gl::DeviceOptions Engine::Impl::with_light_groups() {
 void Engine::Impl::leave_out_unlit() {
     unlit = by_light & effects::without_effect_in(light);
     price_without();
+    unseen.store(drawn_without(), std::memory_order_relaxed);
     device->draws.plays();
     device->hide_effects(always_without());
 }
@@ -169,6 +170,7 @@ void Engine::Impl::take_effects(const prepare::PreparedFrame& set) {
         if (shows[g]) lever.shown |= group.priced;
     }
     lever.shown &= ~(lever.left_out | hidden | unlit) & set.without;
+    unseen.store(drawn_without(), std::memory_order_relaxed);
     learn_effects();
 }
 

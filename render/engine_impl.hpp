@@ -125,7 +125,8 @@ struct Engine::Impl {
     EffectLever lever GUARDED_BY(draws);
     EffectWorth worth;                           ///< of the thread that prepares; empty where no effects are bought
     std::atomic<model::EffectMask> without = 0;  ///< PreparedFrame::without of the next sets
-    std::atomic<float> with_effects{1};          ///< time of forms and bought effects together, as a multiple of the forms'
+    std::atomic<model::EffectMask> unseen = 0;  ///< drawn_without() of the last selection, or since a change of switches or light
+    std::atomic<float> with_effects{1};         ///< time of forms and bought effects together, as a multiple of the forms'
     /// Of the pictures of the last selection's set: to draw them at full resolution, and full detail of what they show.
     std::atomic<float> set_pictures_us{0}, set_pictures_value{0};
     std::atomic<float> light_hour{std::numeric_limits<float>::quiet_NaN()};  ///< of set_light()

@@ -72,7 +72,7 @@ struct EffectLoss {
     std::span<const float> before, after;  ///< by node: mean squared difference of the colours, 0..1, in two lights; empty: none
     float between = 0;                     ///< 0..1: the light is between them
     bool is_fog = false;                   ///< the differences are of what is infinitely far
-    float fog_density = 0;                 ///< Daylight::fog_density
+    float fog_density = 0;                 ///< Daylight::fog_density; 0 where fog is left out, but for fog itself
 };
 
 constexpr std::uint32_t value_levels = 40;

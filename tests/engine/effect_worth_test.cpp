@@ -226,6 +226,24 @@ TEST(EffectWorth, ShadesSixteenTrianglesOfALeafAtMost) {
     EXPECT_EQ(shaded, 16U);
 }
 
+TEST(EffectWorth, OfOthersIsAllThatTheyShowWhereFogIsLeftOut) {
+    SmallModel small;
+    small.square(small.material(test::plain(0.5F, 0.4F, 0.2F, 1, effect_sun | effect_lamps | effect_fog)), test::at(0, 0, -3));
+    model::Model m = small.finish();
+    m.lamp_light.assign(m.vertices.size(), {{255, 255, 128, 0}, {}});
+    m.light.fog_visibility_m = 50;
+    EffectWorth worth(m, groups_of(std::vector<model::EffectMask>{effect_sun, effect_lamps, effect_fog}), {}, sky);
+    const float density = model::daylight_of_model(m.sun_direction, m.light).fog_density;
+    ASSERT_GT(density, 0);
+    for (const model::EffectMask without : {0U, effect_lamps + 0U, effect_fog + 0U, effect_fog | effect_sun}) {
+        const auto losses = worth.at(12, without);
+        const bool clear = (without & effect_fog) != 0;
+        EXPECT_EQ(losses[0].fog_density, clear ? 0 : density) << without;
+        EXPECT_EQ(losses[1].fog_density, clear ? 0 : density) << without;
+        EXPECT_EQ(losses[2].fog_density, density) << without << ": what fog itself would show";
+    }
+}
+
 TEST(EffectWorth, OfShadowsIsWhatTheyTakeFromTheSun) {
     SmallModel small;
     const auto node = small.square(small.material(test::plain(1, 1, 1, 1, effect_sun | effect_shadow)), test::at(0, 0, -3));

@@ -210,6 +210,31 @@ TEST(EngineEffects, WhatIsSwitchedOffIsNeitherPricedNorBought) {
     EXPECT_EQ(always.set.without, effect_fog);
 }
 
+/// Beyond the visibility, shadows show nothing in the fog, and all of themselves without it.
+TEST(EngineEffects, FogThatIsOffOrDroppedTakesNothingFromTheWorthOfOthers) {
+    const auto value = [](EffectForest& f, std::size_t of) {
+        f.prepare();
+        return f.set.effect_value[of];
+    };
+    EffectForest f(0.01F, 0.01F);
+    f.draw(ample_us);
+    const float in_fog = value(f, shade), of_fog = value(f, fog);
+    f.engine->device().draws.plays();
+    f.engine->hide_effects(effect_fog);
+    const float in_clear = value(f, shade);
+    EXPECT_GT(in_clear, 1.2F * in_fog);
+    f.engine->device().draws.plays();
+    f.engine->hide_effects(0);
+    EXPECT_EQ(value(f, shade), in_fog);
+
+    EffectForest dear(0.01F, 1000.0F);
+    EXPECT_EQ(value(dear, shade), in_fog) << "nothing was selected yet";
+    dear.draw(20'000);
+    ASSERT_TRUE(dear.sale(fog).dropped);
+    EXPECT_EQ(value(dear, shade), in_clear) << "the picture has no fog";
+    EXPECT_EQ(value(dear, fog), of_fog) << "so that it can come back";
+}
+
 TEST(EngineEffects, WithoutBudgetAllAreShownAndPricedWithTheForms) {
     EffectForest f(0.5F, 0.25F);
     ASSERT_TRUE(f.engine->set_selector("distance").ok());
