@@ -72,6 +72,8 @@ struct Made {
     model::EffectMask called_for = 0;
     std::set<std::string> stages;  ///< of the bake
     std::size_t light_bytes = 0;   ///< of arrays beside the vertices, with the textures' texels
+    std::size_t vertices = 0, texel_bytes = 0;
+    int state_classes = 0;  ///< different sets of effects among the parts
     int programs = 0, textures = 0, buffers = 0;
     std::set<std::string> uniforms;
     int blended_passes = 0;  ///< of a frame of all objects
@@ -90,6 +92,11 @@ Made make(const importer::Scene& scene) {
     made.called_for = model->called_for();
     made.light_bytes = model->sun_seen.size() * sizeof(model::SunSeen) + model->lamp_light.size() * sizeof(model::LampLight) +
                        model->texels.size();
+    made.vertices = model->vertices.size();
+    made.texel_bytes = model->texels.size();
+    std::set<model::EffectMask> classes;
+    for (const model::Part& part : model->parts) classes.insert(model->materials[part.material].effects);
+    made.state_classes = static_cast<int>(classes.size());
     gl::DeviceOptions how;
     how.viewport = {64, 64};
     how.max_items = 4096;
@@ -189,6 +196,11 @@ TEST(ScenesPay, ForAllWhereAllAreCalledFor) {
     for (const char* stage : {"cutting for light", "light", "shadows"}) EXPECT_TRUE(made.stages.contains(stage)) << stage;
     EXPECT_GT(made.light_bytes, 0U);
     EXPECT_GT(made.programs, 4);
+    EXPECT_EQ(made.light_bytes, made.vertices * (sizeof(model::SunSeen) + sizeof(model::LampLight)) + made.texel_bytes)
+        << "a share of the sun and light of lamps for each vertex, and no more";
+    EXPECT_GT(made.vertices, 0U);
+    EXPECT_EQ(made.programs, made.state_classes + 2)
+        << "one for each state class, the sky's, and that of what casts moving shadows";
     std::set<std::string> all{"view_projection"};
     for (const effects::EffectModule& module : effects::all_effects()) {
         for (const gl::UniformSource& uniform : module.uniforms) all.insert(uniform.name);
