@@ -158,9 +158,12 @@ private:
     void warm_up_meshes(const CachePicture& picture) REQUIRES(draws);
     [[nodiscard]] bool has_capture_program(const draw::DrawPart& part) const REQUIRES(draws);
     [[nodiscard]] std::uint32_t program_of(const draw::DrawPart& part) const REQUIRES(draws) {
+        return program_of(part, variant_);
+    }
+    [[nodiscard]] std::uint32_t program_of(const draw::DrawPart& part, std::size_t variant) const REQUIRES(draws) {
         if (drawing_ == Drawing::shadow) return caster_programs_[part.program];
         const std::vector<std::uint16_t>& programs = drawing_ == Drawing::capture ? capture_programs_ : without_;
-        return programs[variant_ * tables_.masks.size() + part.program];
+        return programs[variant * tables_.masks.size() + part.program];
     }
     /// As it is drawn now: a switchable effect that is left out is none.
     [[nodiscard]] bool is_blended(const draw::DrawPart& part) const REQUIRES(draws) {

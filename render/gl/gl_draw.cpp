@@ -169,8 +169,9 @@ void GlDevice::draw_parts(std::span<const DrawItem> items, Parts parts) {
                 submit({pending_.data(), count});
                 count = 0;
             }
-            pending_[count++] = {state_key(program_of(part), draw::culling(part, placed), texture_of(part), distance), p,
-                                 item.rep};
+            // In the order of all effects, whatever is hidden: where depths are equal, the first one shows.
+            const std::uint64_t key = state_key(program_of(part, 0), draw::culling(part, placed), texture_of(part), distance);
+            pending_[count++] = {key, p, item.rep};
         }
     }
     submit({pending_.data(), count});

@@ -216,6 +216,38 @@ TEST_F(UnlitEffects, LeaveNoTraceInThePictureAtAnyHour) {
     expect_no_trace_at_any_hour(house_with_lamps());
 }
 
+/// Two things have squares that overlap in one plane, where their depths are equal: the one that is drawn first shows.
+TEST_F(UnlitEffects, ThatAreLeftOutDoNotChangeWhichOfTwoEqualDepthsShows) {
+    for (const bool lamps_on_first : {true, false}) {
+        test::SmallModel small;
+        // Out of view: so the programs are not in the order of the squares.
+        small.square(small.material(test::plain(0, 0, 1, 1, lit_sun | (lamps_on_first ? 0U : lit_lamps))), test::at(0, 0, 30));
+        for (const bool first : {true, false}) {
+            const EffectMask effects = lit_sun | (first == lamps_on_first ? lit_lamps : 0U);
+            model::Material material = test::plain(first ? 1.0F : 0.0F, first ? 0.0F : 1.0F, 0, 1, effects);
+            material.two_sided = true;
+            const float half = first ? 1.0F : 0.7F, away = first ? 5.0F : -6.0F;
+            test::Shape shape = test::sheet(half, 1);
+            // Not flat, or the first in the model would win, as parts in one plane are told apart.
+            shape.quad({vec3(0, away, -1), vec3(0.1F, away, -1), vec3(0.1F, away + 0.1F, -1), vec3(0, away + 0.1F, -1)});
+            small.object(shape.vertices, shape.indices, small.material(material), test::at(first ? 0 : 0.3, 0.1, -3));
+        }
+        model::Model m = with_findings(small.finish());
+        m.lamp_light.assign(m.vertices.size(), {{90, 90, 90, 0}, {}});
+        gl::DeviceOptions how = pictures_by(gl::BackendKind::egl, {});
+        how.viewport = {65, 65};
+        const auto engine = engine_of(m, how);
+        auto plain = gl::open_device(how);
+        ASSERT_TRUE(engine != nullptr && plain.ok());
+        engine->device().draws.plays();
+        engine->device().release();
+        (*plain)->bind();
+        ASSERT_TRUE((*plain)->load(m, effects::assemble_program).ok());
+        (*plain)->release();
+        EXPECT_EQ(engine_picture(*engine, m, {}), plain_picture(**plain, m, {})) << lamps_on_first;
+    }
+}
+
 /// Its bake takes half a minute.
 using UnlitEffectsAtNight = UnlitEffects;
 TEST_F(UnlitEffectsAtNight, OfATownLeaveNoTraceAtAnyHour) { expect_no_trace_at_any_hour(baked_town()); }
