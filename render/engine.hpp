@@ -170,8 +170,9 @@ public:
     Result<void> set_selector(std::string_view name);
 
     /// Leaves groups of effects out of the next pictures (gl::DeviceOptions::switches), or the model's own light gives way to
-    /// another. Between pictures, on the thread that draws. A change lets a picture at rest begin anew. Sets that are prepared
-    /// from then on have the prices of what is left. `hour`: of the light, where EngineOptions::effect_hours are given.
+    /// another. Effects that show nothing in it are left out by themselves. Between pictures, on the thread that draws. A change
+    /// lets a picture at rest begin anew. Sets that are prepared from then on have the prices of what is left. `hour`: of the
+    /// light, where EngineOptions::effect_hours are given.
     void hide_effects(model::EffectMask hidden);
     void set_light(const model::Daylight& light, float hour = std::numeric_limits<float>::quiet_NaN());
     /// The time of the next pictures: where what moves is drawn. As hide_effects() else, but a picture at rest goes on: it only
