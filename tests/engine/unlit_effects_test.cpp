@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -464,38 +463,6 @@ TEST_F(UnlitEffects, OfWhatMovesLeaveNoTraceByNight) {
         without.light(light, hour);
         EXPECT_EQ(yard.frame().second == without.frame().second, hour == 0.0) << hour;
     }
-}
-
-TEST(EffectsByLight, ShowNothingOnlyWhereTheyProvablyDo) {
-    model::LightFacts facts;
-    facts.max_lamp_light = 0.7F;
-    EXPECT_EQ(effects::without_effect_in(model::daylight_at(12, facts)), lit_lamps);
-    EXPECT_EQ(effects::without_effect_in(model::daylight_at(0, facts)), all_shadows);
-    EXPECT_EQ(effects::without_effect_in(model::daylight_of_model(dvec3(0, 1, 0), facts)), lit_lamps);
-    for (int step = 0; step < 24 * 30; ++step) {
-        const model::Daylight light = model::daylight_at(step / 30.0, facts);
-        const EffectMask none = effects::without_effect_in(light);
-        EXPECT_EQ((none & lit_lamps) != 0, light.lamp_strength == 0) << step;
-        EXPECT_EQ(none & all_shadows, light.sun_light == vec3(0) ? all_shadows : 0U) << step;
-        EXPECT_EQ(none & ~(lit_lamps | all_shadows), 0U) << step;
-    }
-    model::Daylight light = model::daylight_at(0, facts);
-    for (int channel = 0; channel < 3; ++channel) {
-        light.sun_light = vec3(0);
-        light.sun_light[channel] = 1e-30F;
-        EXPECT_EQ(effects::without_effect_in(light), 0U) << channel;
-    }
-    light.lamp_strength = 1e-30F;
-    EXPECT_EQ(effects::without_effect_in(light), 0U);
-    light.lamp_strength = light.sun_light.r = std::nanf("");
-    EXPECT_EQ(effects::without_effect_in(light), 0U) << "what is no number is left as it is";
-}
-
-TEST(EffectsByLight, GoInGroupsOfTheModelsEffects) {
-    const std::vector<EffectMask> all = effects::groups_by_light(~EffectMask{0});
-    EXPECT_EQ(all, (std::vector<EffectMask>{all_shadows, lit_lamps}));
-    EXPECT_EQ(effects::groups_by_light(lit_sun | model::effect_shadow), (std::vector<EffectMask>{model::effect_shadow}));
-    EXPECT_TRUE(effects::groups_by_light(lit_sun | model::effect_fog | model::effect_sky).empty());
 }
 
 }  // namespace
