@@ -21,8 +21,7 @@ vec3 centre_of(const model::Model& model, const model::Part& part) {
     return part.index_count > 0 ? 0.5F * low + 0.5F * high : vec3(0);
 }
 
-DrawPart make_part(const model::Model& model, const model::Part& part, const std::vector<model::EffectMask>& masks,
-                   const TextureLayout& textures) {
+DrawPart make_part(const model::Model& model, const model::Part& part, std::uint16_t program, const TextureLayout& textures) {
     const model::Material& material = model.materials[part.material];
     DrawPart out{};
     out.first_index = part.first_index;
@@ -36,12 +35,56 @@ DrawPart make_part(const model::Model& model, const model::Part& part, const std
     }
     for (std::size_t i = 0; i < 4; ++i) out.colour[i] = to_byte(material.colour[i]);
     out.alpha_cutoff = material.alpha_cutoff;
-    const auto found = std::lower_bound(masks.begin(), masks.end(), material.effects);
-    out.program = static_cast<std::uint16_t>(found - masks.begin());
+    out.program = program;
     out.two_sided = material.two_sided;
     out.blended = (material.effects & model::effect_blend) != 0;
     if (out.blended) out.centre = centre_of(model, part);
     return out;
+}
+
+std::uint16_t program_of(model::EffectMask mask, const std::vector<model::EffectMask>& masks) {
+    return static_cast<std::uint16_t>(std::lower_bound(masks.begin(), masks.end(), mask) - masks.begin());
+}
+
+/// The state classes of a part: as most eyes see it, and as those do that see only closed sides of it. Equal: all see it alike.
+struct PartMasks {
+    model::EffectMask open, closed;
+};
+
+PartMasks masks_of(const model::Model& model, const model::RoomSides& sides, std::uint32_t part) {
+    const model::EffectMask mask = model.materials[model.parts[part].material].effects;
+    const model::EffectMask closed = sides.any(part) ? mask & ~model::effects_under_sky : mask;
+    return {sides.all(part) ? closed : mask, closed};
+}
+
+std::vector<model::EffectMask> all_masks(const model::Model& model, const model::RoomSides& sides) {
+    std::vector<model::EffectMask> masks;
+    for (std::uint32_t p = 0; p < model.parts.size(); ++p) {
+        const PartMasks of_part = masks_of(model, sides, p);
+        masks.insert(masks.end(), {of_part.open, of_part.closed});
+    }
+    std::sort(masks.begin(), masks.end());
+    masks.erase(std::unique(masks.begin(), masks.end()), masks.end());
+    return masks;
+}
+
+void add_parts(const model::Model& model, DrawTables& tables) {
+    tables.closed = model::RoomSides(model);
+    tables.masks = all_masks(model, tables.closed);
+    const auto count = static_cast<std::uint32_t>(model.parts.size());
+    tables.parts.reserve(count);
+    for (std::uint32_t p = 0; p < count; ++p)
+        tables.parts.push_back(
+            make_part(model, model.parts[p], program_of(masks_of(model, tables.closed, p).open, tables.masks), tables.textures));
+    for (std::uint32_t p = 0; p < count; ++p) {
+        const PartMasks masks = masks_of(model, tables.closed, p);
+        if (masks.open == masks.closed) continue;
+        tables.parts[p].in_room = static_cast<std::uint32_t>(tables.parts.size());
+        tables.parts.push_back(tables.parts[p]);
+        tables.parts.back().in_room = model::none;
+        tables.parts.back().program = program_of(masks.closed, tables.masks);
+        tables.part_of.push_back(p);
+    }
 }
 
 }  // namespace
@@ -50,12 +93,7 @@ DrawTables make_tables(const model::Model& model) {
     DrawTables tables;
     tables.textures = lay_out_textures(model);
     tables.depth_bias = depth_bias_ranks(model);
-    for (const model::Part& part : model.parts) tables.masks.push_back(model.materials[part.material].effects);
-    std::sort(tables.masks.begin(), tables.masks.end());
-    tables.masks.erase(std::unique(tables.masks.begin(), tables.masks.end()), tables.masks.end());
-
-    tables.parts.reserve(model.parts.size());
-    for (const model::Part& part : model.parts) tables.parts.push_back(make_part(model, part, tables.masks, tables.textures));
+    add_parts(model, tables);
     tables.reps.reserve(model.reps.size());
     for (const model::Representation& rep : model.reps) {
         tables.reps.push_back({rep.placement, rep.first_part, rep.part_count, rep.triangles, 0});
@@ -85,6 +123,13 @@ DrawTables make_tables(const model::Model& model) {
         tables.centres.emplace_back(vec3(centre), 0.0F);
     }
     return tables;
+}
+
+vec3 eye_in_frame(const Placed& placed, const dvec3& eye) {
+    mat3 linear;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) linear[column][row] = placed.rows[static_cast<std::size_t>(3 * row + column)];
+    return model::eye_in_frame(placed.origin, linear, eye);
 }
 
 float distance_m(const DrawPart& part, const Placed& placed, const dvec3& eye) {

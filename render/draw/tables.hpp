@@ -7,6 +7,7 @@
 
 #include "render/draw/coincidence.hpp"
 #include "render/draw/texture_arrays.hpp"
+#include "render/model/room_sides.hpp"
 #include "render/model/model.hpp"
 
 namespace surefoot::draw {
@@ -24,7 +25,8 @@ struct DrawPart {
     vec3 centre;            ///< of a blended one's box, in the mesh's frame; for sorting only
     std::uint16_t program;  ///< in the list of masks
     bool two_sided, blended;
-    bool captured;  ///< a picture that holds the light of the bake
+    bool captured;                        ///< a picture that holds the light of the bake
+    std::uint32_t in_room = model::none;  ///< the same without the sun, in DrawTables::parts; none: no eye sees it so
 };
 
 /// A representation: its placement and its range of parts.
@@ -45,13 +47,21 @@ struct Placed {
 struct DrawTables {
     TextureLayout textures;
     std::vector<model::EffectMask> masks;  ///< state classes of the model's parts, ascending
-    std::vector<DrawPart> parts;
+    std::vector<DrawPart> parts;           ///< those of the model, then those that DrawPart::in_room names
+    std::vector<std::uint32_t> part_of;    ///< of the latter: what each is without the sun
+    model::RoomSides closed;             ///< whether an eye sees a part so
     std::vector<DrawRep> reps;
     std::vector<Placed> placements;
     std::vector<std::uint32_t> motions;  ///< of the model, by placement; empty where nothing moves
     DepthBiasRanks depth_bias;
     std::vector<vec4> centres;  ///< of a node's box, relative to `middle`; for sorting only
     dvec3 middle{0.0};
+
+    /// The part of the model that one of `parts` is.
+    [[nodiscard]] std::uint32_t model_part(std::uint32_t part) const {
+        const std::size_t own = parts.size() - part_of.size();
+        return part < own ? part : part_of[part - own];
+    }
 };
 
 DrawTables make_tables(const model::Model& model);
@@ -61,6 +71,9 @@ Placed moved(const Placed& placed, const model::RigidPose& pose);
 
 /// The eye-relative rows of a placement. The origin is made relative in double: floats lose millimetres far from 0.
 void eye_relative_rows(const Placed& placed, const dvec3& eye, std::array<float, 12>& rows);
+
+/// An eye in the frame of what is placed.
+vec3 eye_in_frame(const Placed& placed, const dvec3& eye);
 
 /// From the eye to the centre of a blended part, m.
 float distance_m(const DrawPart& part, const Placed& placed, const dvec3& eye);

@@ -199,7 +199,8 @@ Result<void> GlDevice::compile_captures(const model::Model& model, const Program
     for (const draw::DrawRep& rep : tables_.reps) {
         if (model.nodes[rep.node].child_count > 0) continue;
         for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p)
-            captured[tables_.parts[p].program] = true;
+            for (const std::uint32_t part : {p, tables_.parts[p].in_room})
+                if (part != model::none) captured[tables_.parts[part].program] = true;
     }
     const std::size_t others = resources_.programs.size();
     capture_programs_.assign(without_.size(), no_program);

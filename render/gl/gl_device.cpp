@@ -159,8 +159,11 @@ std::vector<GlDevice::Pending> GlDevice::one_of_each_state() const {
     for (std::uint32_t r = 0; r < tables_.reps.size(); ++r) {
         const draw::DrawRep& rep = tables_.reps[r];
         for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
-            const Pending pending{0, p, r};
-            kinds.emplace_back(state_of(pending), pending);
+            for (const std::uint32_t part : {p, tables_.parts[p].in_room}) {
+                if (part == model::none) continue;
+                const Pending pending{0, part, r};
+                kinds.emplace_back(state_of(pending), pending);
+            }
         }
     }
     const auto order = [](const auto& a, const auto& b) {

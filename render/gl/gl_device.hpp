@@ -175,6 +175,7 @@ private:
     }
     [[nodiscard]] GeometryBuffers geometry() const REQUIRES(draws);
     [[nodiscard]] State state_of(const Pending& pending) const REQUIRES(draws);
+    [[nodiscard]] std::uint32_t shown_part(std::uint32_t part, std::uint32_t placement) REQUIRES(draws);
     void submit(std::span<Pending> sorted) REQUIRES(draws);
     void submit_blended() REQUIRES(draws);
     void issue(const State& state, std::uint32_t first, std::uint32_t count) REQUIRES(draws);

@@ -132,6 +132,15 @@ GlDevice::State GlDevice::state_of(const Pending& pending) const {
     return {program_of(part), texture_of(part), drawing_ == Drawing::shadow ? draw::Culling::none : draw::culling(part, placed)};
 }
 
+/// The part, or the same without the sun where the eye sees only sides that see no sky.
+std::uint32_t GlDevice::shown_part(std::uint32_t part, std::uint32_t placement) {
+    const std::uint32_t in_room = tables_.parts[part].in_room;
+    if (in_room == model::none || drawing_ == Drawing::shadow) return part;
+    const draw::Placed& placed = tables_.placements[placement];
+    const vec3 eye = draw::eye_in_frame(placed.moves ? placed_now(placement) : placed, pose_.position);
+    return tables_.closed.shows_no_sky(part, eye) ? in_room : part;
+}
+
 void GlDevice::draw(std::span<const DrawItem> items) { draw_parts(items, Parts::all); }
 
 void GlDevice::draw_rest(std::span<const DrawItem> items, Parts parts) {
@@ -153,7 +162,8 @@ void GlDevice::draw_parts(std::span<const DrawItem> items, Parts parts) {
                                             : glm::length(vec3(tables_.centres[item.node]) - eye);
         ++stats_.items;
         stats_.triangles += rep.triangles;
-        for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+        for (std::uint32_t own = rep.first_part; own < rep.first_part + rep.part_count; ++own) {
+            const std::uint32_t p = shown_part(own, rep.placement);
             const draw::DrawPart& part = tables_.parts[p];
             if (part.index_count == 0 || (parts != Parts::all && is_blended(part) != (parts == Parts::blended))) continue;
             if (drawing_ == Drawing::capture && !has_capture_program(part)) continue;
@@ -231,9 +241,8 @@ void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
         draw::eye_relative_rows(placed_now(placement), pose_.position, instance.rows);
     else
         draw::eye_relative_rows(placed, pose_.position, instance.rows);
-    const draw::DrawRep& rep = tables_.reps[pending.rep];
-    apply_depth_bias(tables_.depth_bias.ranks[tables_.depth_bias.first_of_rep[pending.rep] + pending.part - rep.first_part],
-                     instance.rows);
+    const std::uint32_t in_rep = tables_.model_part(pending.part) - tables_.reps[pending.rep].first_part;
+    apply_depth_bias(tables_.depth_bias.ranks[tables_.depth_bias.first_of_rep[pending.rep] + in_rep], instance.rows);
     const bool by_hour = part.captured && (off_ & model::effect_sun) == 0;
     instance.colour = by_hour ? darkened(part.colour, shown_.light.pictures) : part.colour;
     instance.alpha_cutoff = part.alpha_cutoff;

@@ -74,6 +74,27 @@ TEST(EffectUse, OfAPathThatLooksAwayHalfTheTimeIsHalf) {
     EXPECT_LE(use.walked.triangles, use.full.triangles) << "a walk has no time for more";
 }
 
+TEST(EffectUse, WhatShowsNoSkyDoesNotCountForTheSun) {
+    EffectScene scene;
+    scene.model.materials[EffectScene::lit].effects |= model::effect_openness;
+    scene.model.materials[EffectScene::lit].two_sided = true;
+    for (model::Vertex& v : scene.model.vertices) v.hidden[0] = 255;  // their fronts look to +z
+    EngineOptions options;
+    options.device.kind = gl::BackendKind::null;
+    options.device.viewport = {160, 90};
+    auto engine = Engine::open(std::move(scene.model), model::default_costs(), options);
+    ASSERT_TRUE(engine.ok()) << engine.error().text();
+    std::array<Pose, 2> poses;
+    poses[0].position = dvec3(0, 0, 12);  // at first, poses look along -z
+    poses[1].position = dvec3(0, 0, -12);
+    poses[1].orientation = dquat(0, 0, 1, 0);  // half a turn about y
+    const UseOfEffects use = measure_use(**engine, poses, {});
+    EXPECT_EQ(use.full.frames, 2U);
+    EXPECT_EQ(use.full.frames_with[sun], 1U) << "from behind";
+    EXPECT_EQ(use.full.first_frame[sun], 1U);
+    EXPECT_EQ(use.full.triangles_with[sun], 5U);
+}
+
 TEST(AllOn, EveryMaterialHasEachEffectThatChangesNoPicture) {
     EffectScene scene;
     scene.model.materials[EffectScene::textured].effects |= model::effect_alpha_mask;

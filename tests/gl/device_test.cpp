@@ -313,6 +313,34 @@ TEST_F(DeviceTest, what_is_hidden_from_the_sky_has_the_light_of_a_room) {
     EXPECT_EQ(shade(both, 255, 255, true), shade(sun, 0, 0, true)) << "behind it nothing is hidden";
 }
 
+TEST_F(DeviceTest, a_side_that_sees_no_sky_is_drawn_without_the_sun) {
+    // Programs without the sun draw red here. The front of the square sees no sky, its back does.
+    const auto red_without_sun = [](model::EffectMask mask) {
+        gl::ProgramSource source = effects::assemble_program(mask);
+        const std::string shown = "vec4(colour.rgb, opacity)";
+        if ((mask & model::effect_sun) == 0)
+            source.fragment.replace(source.fragment.find(shown), shown.size(), "vec4(1, 0, 0, 1)");
+        return source;
+    };
+    const mat3 as_it_is(1.0F), turned(vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1)),
+        mirrored(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1));
+    for (const auto& [linear, shows_front] : {std::pair{as_it_is, true}, {turned, false}, {mirrored, false}}) {
+        SmallModel scene;
+        model::Material wall = plain(0, 0.8F, 0, 1, model::effect_sun | model::effect_openness);
+        wall.two_sided = true;
+        const auto node = scene.square(scene.material(wall), at(0, 0, -3, linear));
+        for (model::Vertex& v : scene.model().vertices) v.hidden[0] = 255;
+        const model::Model model = scene.finish();
+        const auto usual = pixel(picture(model, {node}), 50, 50);
+        model::Model indoors = model;
+        indoors.materials[0].effects = model::effect_openness;
+        EXPECT_EQ(usual == pixel(picture(indoors, {node}), 50, 50), shows_front) << "the light of a room, bit by bit";
+        ASSERT_TRUE(device_->load(model, red_without_sun).ok());
+        show(*device_, {{node, model.nodes[node].first_rep}}, straight());
+        EXPECT_EQ(pixel(*device_->read_pixels(), 50, 50) == red, shows_front);
+    }
+}
+
 TEST_F(DeviceTest, a_switched_off_sun_leaves_no_trace_and_comes_back) {
     gl::DeviceOptions options;
     options.kind = BackendKind::egl;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "render/model/moving.hpp"
+#include "render/model/room_sides.hpp"
 #include "tools/walk/frame_share.hpp"
 
 namespace surefoot::accuracy {
@@ -23,6 +25,39 @@ model::Index object_of(const model::Model& m, model::Index leaf) {
 struct Named {
     std::uint64_t triangles = 0;
     std::vector<model::Index> objects;
+};
+
+/// Triangles by effect as the device draws forms for an eye: what sees no sky has no sun there.
+class SeenTriangles {
+public:
+    SeenTriangles(const model::Model& m, double time_s)
+        : m_(m), closed_(m), poses_(m), of_reps_(triangles_of_reps(m)), seen_(of_reps_) {
+        poses_.set_time(time_s);
+    }
+    std::span<const TrianglesByEffect> from(const dvec3& eye, std::span<const model::Index> reps) {
+        for (const model::Index r : reps) count(r, eye);
+        return seen_;
+    }
+
+private:
+    void count(model::Index r, const dvec3& eye) {
+        const model::Representation& rep = m_.reps[r];
+        const model::Placement& place = m_.placements[rep.placement];
+        seen_[r] = of_reps_[r];
+        for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+            if (!closed_.any(p)) continue;
+            const dvec3 at_rest = place.motion == model::none ? eye : poses_.at(place.motion).back(eye);
+            if (!closed_.shows_no_sky(p, model::eye_in_frame(place.origin, place.linear, at_rest))) continue;
+            const model::EffectMask unused = m_.materials[m_.parts[p].material].effects & model::effects_under_sky;
+            for (std::size_t e = 0; e < seen_[r].size(); ++e)
+                if ((unused >> e & 1U) != 0) seen_[r][e] -= m_.parts[p].index_count / 3;
+        }
+    }
+
+    const model::Model& m_;
+    model::RoomSides closed_;
+    model::MotionPoses poses_;
+    std::vector<TrianglesByEffect> of_reps_, seen_;
 };
 
 }  // namespace
@@ -82,23 +117,23 @@ std::vector<Holder> holders_of(const model::Model& m, std::size_t effect) {
 UseOfEffects measure_use(Engine& engine, std::span<const Pose> poses, const Progress& progress, double time_s) {
     UseOfEffects use;
     const model::Model& m = engine.model();
-    const std::vector<TrianglesByEffect> of_reps = triangles_of_reps(m);
+    SeenTriangles triangles(m, time_s);
     constexpr double budget_us = walk::frame_share * 1e6 / walked_rate_hz;
     prepare::PreparedFrame prepared;
     engine.reserve(prepared);
     PrepareHints hints;
     hints.time_s = time_s;
     std::vector<model::Index> reps;
-    const auto count = [&](FramesInUse& frames, const auto& items) {
+    const auto count = [&](FramesInUse& frames, const dvec3& eye, const auto& items) {
         reps.clear();
         for (const auto& item : items) reps.push_back(item.rep);
-        frames.add(m, of_reps, reps);
+        frames.add(m, triangles.from(eye, reps), reps);
     };
     for (const Pose& pose : poses) {
         if (progress.stopped()) break;
-        count(use.full, engine.full_detail(pose));
+        count(use.full, pose.position, engine.full_detail(pose));
         engine.prepare({pose, 0.0, 0.0}, 0, 0.0, 0.0, prepared, hints);
-        count(use.walked, engine.select(prepared, budget_us, {}, 0.0).items);
+        count(use.walked, pose.position, engine.select(prepared, budget_us, {}, 0.0).items);
     }
     return use;
 }
