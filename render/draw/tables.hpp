@@ -7,8 +7,8 @@
 
 #include "render/draw/coincidence.hpp"
 #include "render/draw/texture_arrays.hpp"
-#include "render/model/room_sides.hpp"
 #include "render/model/model.hpp"
+#include "render/model/room_sides.hpp"
 
 namespace surefoot::draw {
 
@@ -49,7 +49,7 @@ struct DrawTables {
     std::vector<model::EffectMask> masks;  ///< state classes of the model's parts, ascending
     std::vector<DrawPart> parts;           ///< those of the model, then those that DrawPart::in_room names
     std::vector<std::uint32_t> part_of;    ///< of the latter: what each is without the sun
-    model::RoomSides closed;             ///< whether an eye sees a part so
+    model::RoomSides closed;               ///< whether an eye sees a part so
     std::vector<DrawRep> reps;
     std::vector<Placed> placements;
     std::vector<std::uint32_t> motions;  ///< of the model, by placement; empty where nothing moves

@@ -13,10 +13,12 @@ namespace {
 /// A non-negative float's bits sort as the float does; anything else sorts first.
 std::uint32_t distance_bits(float distance) { return distance > 0 ? std::bit_cast<std::uint32_t>(distance) : 0U; }
 
-/// Program, culling, texture, then front to back. Textures beyond 2^20 share keys: batches compare the true state.
-std::uint64_t state_key(std::uint32_t program, draw::Culling culling, std::uint32_t texture, float distance) {
-    return static_cast<std::uint64_t>(program & 0x3ffU) << 54U | static_cast<std::uint64_t>(culling) << 52U |
-           static_cast<std::uint64_t>(texture & 0xfffffU) << 32U | distance_bits(distance);
+/// The part's usual program, what shows no sky first, culling, texture, then front to back. Programs beyond 2^9 and textures
+/// beyond 2^20 share keys: batches compare the true state.
+std::uint64_t state_key(std::uint32_t program, bool sky, draw::Culling culling, std::uint32_t texture, float distance) {
+    return static_cast<std::uint64_t>(program & 0x1ffU) << 55U | static_cast<std::uint64_t>(sky ? 1 : 0) << 54U |
+           static_cast<std::uint64_t>(culling) << 52U | static_cast<std::uint64_t>(texture & 0xfffffU) << 32U |
+           distance_bits(distance);
 }
 
 /// Scales a part about the eye by its rank among coincident parts. Its place on the screen does not change, but its depth does.
@@ -180,7 +182,8 @@ void GlDevice::draw_parts(std::span<const DrawItem> items, Parts parts) {
                 count = 0;
             }
             // In the order of all effects, whatever is hidden: where depths are equal, the first one shows.
-            const std::uint64_t key = state_key(program_of(part, 0), draw::culling(part, placed), texture_of(part), distance);
+            const std::uint64_t key =
+                state_key(program_of(tables_.parts[own], 0), p == own, draw::culling(part, placed), texture_of(part), distance);
             pending_[count++] = {key, p, item.rep};
         }
     }
