@@ -11,8 +11,8 @@ namespace surefoot::model {
 /// Effects that change nothing where no sky is seen.
 constexpr EffectMask effects_under_sky = effect_sun | effect_shadow | effect_moving_shadow;
 
-/// By Vertex::hidden of both sides, and by the rule of the programs: a vertex of two-sided material shows the side to which its
-/// normal is turned. Constant once made; any thread may read it.
+/// By Vertex::hidden of both sides, and by the rule of the programs. A vertex of two-sided material shows its front where its
+/// normal is turned to the eye, else its back. Constant once made; any thread may read it.
 class RoomSides {
 public:
     RoomSides() = default;
