@@ -25,8 +25,10 @@ constexpr double steady_share = 0.09;    // and later: what they take is within 
 constexpr std::int64_t refill_ns = 2'000'000'000;
 constexpr double max_share = 1.0 / 16;  // of the budget, for one picture: what a slice may take
 constexpr double usual_budget_us = 33'333;
-constexpr double value_share = 1e-5;     // of the picture: of what saves time that nothing else can use
-constexpr double min_rate_share = 1e-7;  // of the picture's value: a us is worth at least this, or little would count much
+constexpr double value_share = 1e-5;             // of the picture: of what saves time that nothing else can use
+constexpr double min_rate_share = 1e-9;          // of the picture's value: a us is worth at least this
+constexpr double min_promised_share = 1e-7;      // the same where an accuracy is promised: time is for keeping it
+constexpr double needed_share = 1.25;            // of what they save: so that they do not come and go
 constexpr std::uint32_t first_picture_item = 1;  // of ItemKind::refresh; the shadow map is below
 constexpr std::size_t uncovered_chunk = 32;
 constexpr std::uint32_t timed_every = 8;  // frames with pictures
@@ -159,6 +161,7 @@ void Engine::Impl::prepay_pictures(const prepare::PreparedFrame& set) {
     const double at = static_cast<double>(drawn_resolution);
     set_pictures_us.store(static_cast<float>(pictures_us / (at * at)), std::memory_order_relaxed);
     set_pictures_value.store(static_cast<float>(in_set.value), std::memory_order_relaxed);
+    pictures_save_us = in_set.saves_us;
     if (pictures_us > 0) offered.prepay({select::ItemKind::pictures, 0, static_cast<float>(pictures_us), 0});
 }
 
@@ -185,7 +188,13 @@ void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const selec
     const auto room_us = static_cast<float>(select::Budget(input).room_us());
     const float a_ms = by_budget ? set.curve.value_at(room_us + 1000.0F) - set.curve.value_at(room_us) : 0.0F;
     const double rate = std::max(1e-3 * static_cast<double>(a_ms), value_share * set.full_value / usual_budget_us);
-    const double buying = std::max(rate, min_rate_share * set.full_value);
+    const bool promised = promised_rad > 0;
+    const double buying = std::max(rate, (promised ? min_promised_share : min_rate_share) * set.full_value);
+    // As much as pictures save might be gone without them. Where more time than is left then shows nothing more, they are not
+    // needed.
+    const auto without_us = static_cast<float>(std::max(0.0, static_cast<double>(room_us) - needed_share * pictures_save_us));
+    const float more = set.curve.value_at(without_us + 1000.0F) - set.curve.value_at(without_us);
+    view.ample = by_budget && !promised && 1e-3 * static_cast<double>(more) <= min_rate_share * set.full_value;
     view.picture_factor = picture_factor;
     view.us_per_value = by_budget && buying > 0 ? 1 / buying : 0.0;
     const std::span<const cache::CacheOffer> plan_of_pictures = pictures.plan(view);

@@ -108,6 +108,7 @@ struct Engine::Impl {
     cache::EyeCourse course GUARDED_BY(draws);           ///< of cover()
     double turn_rad GUARDED_BY(draws) = 0;               ///< of the views after it
     double pictures_us GUARDED_BY(draws) = 0;            ///< to draw the pictures of the cut's set, as predicted
+    double pictures_save_us GUARDED_BY(draws) = 0;       ///< what they show took as forms
     double last_picture_sample GUARDED_BY(draws) = 1;    ///< of picture_factor
     double picture_factor GUARDED_BY(draws) = 1;         ///< time to draw pictures, over the table's and the frame's correction
     std::uint32_t picture_frames GUARDED_BY(draws) = 0;  ///< that drew enough of them to be timed

@@ -241,8 +241,10 @@ float WalkCache::draw_us(Index box, const PlanView& view) const {
 }
 
 /// Of a picture of the box in a frame, without its own time.
-float WalkCache::full_worth_us(Index box, double us_per_value) const {
-    return saving_us_[box] + static_cast<float>(us_per_value) * value_[box].missing;
+float WalkCache::full_worth_us(Index box, const PlanView& view) const {
+    if (view.ample) return 0;
+    const Value& shown = value_[box];
+    return saving_us_[box] + static_cast<float>(view.us_per_value) * (shown.missing - loss() * shown.full);
 }
 
 float WalkCache::us_of(const model::FrameCombine& combine, const model::ItemCost& cost) {
@@ -260,7 +262,7 @@ double WalkCache::allowed_for_new_rad(Index box, const PlanView& view) const {
 
 /// A new picture of the box, where it pays. False: it does not.
 bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) const {
-    const float saves_us = sure_share(view.picture_factor) * full_worth_us(box, view.us_per_value) - draw_us(box, view);
+    const float saves_us = sure_share(view.picture_factor) * full_worth_us(box, view) - draw_us(box, view);
     if (!(saves_us > min_saving_us)) return false;
     const auto prospect = prospect_of(boxes_.filled(box), view.course, allowed_for_new_rad(box, view));
     if (!prospect || before_blended(prospect->box)) return false;
@@ -290,8 +292,7 @@ void WalkCache::refresh_facts(const PlanView& view) {
     const std::uint32_t quarter = options_.prospects / 4;
     std::uint32_t left = quarter;
     for (Index i = 0; i < boxes_.size() && left > 0; ++i)
-        if (in_view_[i] && full_worth_us(i, view.us_per_value) > dearer * facts_[i].worth_us)
-            left -= work_out_fact(i, view) ? 1 : 0;
+        if (in_view_[i] && full_worth_us(i, view) > dearer * facts_[i].worth_us) left -= work_out_fact(i, view) ? 1 : 0;
     left += options_.prospects - (options_.surround ? 2 : 1) * quarter;
     work_out_facts(view, next_fact_, left, true);
     left += quarter;
@@ -310,7 +311,7 @@ void WalkCache::work_out_facts(const PlanView& view, Index& next, std::uint32_t&
 
 /// False: that took no time.
 bool WalkCache::work_out_fact(Index i, const PlanView& view) {
-    facts_[i] = {0, full_worth_us(i, view.us_per_value)};
+    facts_[i] = {0, full_worth_us(i, view)};
     if (!boxes_.may_have_picture(i) || !(facts_[i].worth_us > min_saving_us)) return false;
     CacheOffer offer;
     if (work_out(i, view, offer))
@@ -334,7 +335,7 @@ float WalkCache::own_net_us(Index box, const PlanView& view) {
     if (frame_ < out_until_[box]) return 0;
     if (!(facts_[box].net_us > 0.0F) && !held_[box].any()) return 0;
     if (!options_.surround && !in_view_[box]) return 0;
-    const float price_us = draw_us(box, view), worth_us = full_worth_us(box, view.us_per_value), net_us = worth_us - price_us;
+    const float price_us = draw_us(box, view), worth_us = full_worth_us(box, view), net_us = worth_us - price_us;
     pays_[box] = sure_share(view.picture_factor) * worth_us > (pays_[box] ? 1 - pays_band : 1 + pays_band) * price_us;
     const bool serves = serves_on(box, view);
     serves_[box] = serves && pays_[box];
@@ -452,7 +453,7 @@ bool WalkCache::take(const CacheOffer& offer) {
 const CacheDraws& WalkCache::draws(const model::CoverBits& set, const ViewPixels& pixels, const model::Frustum& frustum) {
     draws_.boxes.clear();
     draws_.unserved.clear();
-    draws_.value = 0;
+    draws_.value = draws_.saves_us = 0;
     if (!any()) return draws_;
     look_from(pixels.eye);
     for (Index i = boxes_.size(); i-- > 0;) {
@@ -474,7 +475,7 @@ void WalkCache::draw_below(Index i, const ViewPixels& pixels, const model::Frust
         held.any() && valid_around(held.picture, pixels.eye, 0, allowed_rad(i, held.box, pixels)) && !before_blended(held.box);
     if (box.child_count == 0 && !valid) draws_.unserved.push_back(i);
     const std::size_t shown = draws_.boxes.size(), unserved = draws_.unserved.size();
-    const double value = draws_.value;
+    const double value = draws_.value, saves_us = draws_.saves_us;
     if (box.child_count > 0 && (!valid || !pays_[i]))
         back_to_front(boxes_.tree(), box.first_child, box.child_count, pixels.eye,
                       [&](Index child) { draw_below(child, pixels, frustum); });
@@ -483,7 +484,8 @@ void WalkCache::draw_below(Index i, const ViewPixels& pixels, const model::Frust
     draws_.boxes.resize(shown);
     draws_.unserved.resize(unserved);
     draws_.boxes.push_back(i);
-    draws_.value = value + static_cast<double>(value_[i].full);
+    draws_.value = value + static_cast<double>((1 - loss()) * value_[i].full);
+    draws_.saves_us = saves_us + static_cast<double>(saving_us_[i]);
 }
 
 }  // namespace surefoot::cache

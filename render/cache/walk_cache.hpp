@@ -28,6 +28,7 @@ struct WalkCacheOptions {
     float picture_ns_per_pixel = 5.6F;  ///< of the box's faces
     float capture_us = 20;              ///< to make a picture, beside what it shows
     float capture_ns_per_texel = 1.0F;  ///< the same, by its texels: to clear it
+    float loss = 0.003F;                ///< of the value of what a picture shows: it is sampled twice
 };
 
 /// A box's picture.
@@ -58,6 +59,7 @@ struct PlanView {
     double max_price_us = 0;                  ///< of a picture
     double picture_factor = 1;                ///< on what draw_us() predicts
     double us_per_value = 0;                  ///< what the frame would pay for a weighted pixel; 0: time is all that counts
+    bool ample = false;                       ///< the frame shows all it can without pictures: none is worth anything
     model::FrameCombine combine;
 };
 
@@ -65,7 +67,8 @@ struct PlanView {
 struct CacheDraws {
     std::vector<Index> boxes;     ///< their pictures, back to front
     std::vector<Index> unserved;  ///< covered leaves of the tree whose pictures are not valid: their nodes must be drawn
-    double value = 0;             ///< full detail of their contents, as it was when they were drawn last
+    double value = 0;             ///< what they show, by full detail of their contents as it was when they were drawn last
+    double saves_us = 0;          ///< what their contents took then, as forms
 };
 
 /// The state between frames.
@@ -157,7 +160,9 @@ private:
         HeldPicture before;  ///< which its slot still holds; none where it has another slot
     };
     [[nodiscard]] float draw_us(Index box, const PlanView& view) const;
-    [[nodiscard]] float full_worth_us(Index box, double us_per_value) const;
+    [[nodiscard]] float full_worth_us(Index box, const PlanView& view) const;
+    /// What is within a promise counts as right.
+    [[nodiscard]] float loss() const { return promise_rad_ > 0 ? 0.0F : options_.loss; }
     [[nodiscard]] bool work_out(Index box, const PlanView& view, CacheOffer& offer) const;
     [[nodiscard]] bool pays_beside_held(CacheOffer& offer, const PlanView& view) const;
     void refresh_facts(const PlanView& view);
@@ -231,15 +236,17 @@ private:
     std::vector<float> cell_worth_us_;      ///< by square of 64 texels
 
     // With a surround alone.
-    model::Frustum seen_;                  ///< of the last plan()
-    dvec3 seen_from_{0.0};                 ///< its eye
-    bool planned_ = false;                 ///< since the last end_costs()
-    std::vector<dvec3> known_from_;        ///< by box: the eye for which its cost was measured; NaN: it was not
-    std::vector<bool> seen_now_;           ///< by box: measured by the last cut
-    std::uint64_t view_first_until_ = 0;   ///< the frame until which boxes out of view have a share alone
-    Index next_beside_ = 0;                ///< as next_fact_, of boxes out of view
-    double known_us_ = 0, priced_us_ = 0;  ///< of boxes in view, since facts began anew: by the cut, by the cost table
-    float spent_share_ = 1;                ///< of the cost table's price, that cuts spend
+    model::Frustum seen_;                    ///< of the last plan()
+    dvec3 seen_from_{0.0};                   ///< its eye
+    bool planned_ = false;                   ///< since the last end_costs()
+    std::vector<dvec3> known_from_;          ///< by box: the eye for which its cost was measured; NaN: it was not
+    std::vector<bool> seen_now_;             ///< by box: measured by the last cut
+    std::uint64_t view_first_until_ = 0;     ///< the frame until which boxes out of view have a share alone
+    Index next_beside_ = 0;                  ///< as next_fact_, of boxes out of view
+    double known_us_ = 0, priced_us_ = 0;    ///< of boxes in view, since facts began anew: by the cut, by the cost table
+    double known_value_ = 0, known_px_ = 0;  ///< the same boxes: what they show, and the pixels of their faces
+    float spent_share_ = 1;                  ///< of the cost table's price, that cuts spend
+    float value_a_px_ = 0.5F;                ///< of the pixels of a box's faces
     CacheDraws draws_;
 };
 

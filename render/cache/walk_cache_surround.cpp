@@ -32,12 +32,13 @@ bool WalkCache::measured(Index box) {
 }
 
 /// The cost table's price stands for a cost that no cut has told, or one from too far away. Cuts spend a share of it: the boxes
-/// in view say which.
+/// in view say which. What is shown there is estimated alike, by the pixels of the box's faces.
 void WalkCache::estimate(Index box, const PlanView& view) {
     if (!options_.surround) return;
     if (box == 0) {
         if (priced_us_ > 0) spent_share_ = std::min(static_cast<float>(known_us_ / priced_us_), max_spent_share);
-        known_us_ = priced_us_ = 0;
+        if (known_px_ > 0) value_a_px_ = static_cast<float>(known_value_ / known_px_);
+        known_us_ = priced_us_ = known_value_ = known_px_ = 0;
     }
     const Box& filled = boxes_.filled(box);
     if (filled.empty() || !boxes_.may_have_picture(box)) return;
@@ -46,13 +47,20 @@ void WalkCache::estimate(Index box, const PlanView& view) {
     const bool is_leaf = boxes_.tree().boxes[box].child_count == 0;
     if (known && !(is_leaf && seen_now_[box])) return;
     float price_us = 0;
-    if (is_leaf) price_us = us_of(view.combine, boxes_.capture_cost(box, 1 / (view.pixel_rad * distance)));
+    double pixels = 0;
+    if (is_leaf) {
+        price_us = us_of(view.combine, boxes_.capture_cost(box, 1 / (view.pixel_rad * distance)));
+        pixels = std::min(view.view_px, faces_sr(filled, view.course.eye) / (view.pixel_rad * view.pixel_rad));
+    }
     if (!known) {
         across_us_[box] = spent_share_ * price_us;
+        if (is_leaf) value_[box] = {value_a_px_ * static_cast<float>(pixels), 0};
         return;
     }
     known_us_ += static_cast<double>(across_us_[box]);
     priced_us_ += static_cast<double>(price_us);
+    known_value_ += static_cast<double>(value_[box].full);
+    known_px_ += pixels;
 }
 
 }  // namespace surefoot::cache

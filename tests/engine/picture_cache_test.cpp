@@ -195,6 +195,22 @@ TEST(PictureCache, NoRoomForAPictureMeansNoPicture) {
     }
 }
 
+/// Pictures are softer than what they show, and time that nothing else can use is worth nothing.
+TEST(PictureCache, AFrameWithTimeForAllHasNoPictures) {
+    for (const bool all_round : {false, true}) {
+        PictureWalk walk(test::forest_model(), {.selector = "best-first", .all_round = all_round});
+        const double full_us = walk.frame(along(walk.engine(), 0)).predicted_us;
+        std::uint32_t made = 0;
+        for (int i = 1; i < 30; ++i) made += walk.frame(along(walk.engine(), i), 2 * full_us).pictures_made;
+        EXPECT_EQ(made, 0U) << "there is time for all";
+        for (int i = 30; i < 60; ++i) made += walk.frame(along(walk.engine(), i), 0.5 * full_us).pictures_made;
+        EXPECT_GT(made, 0U) << "there is not";
+        std::uint32_t shown = 1;
+        for (int i = 60; i < 66; ++i) shown = walk.frame(along(walk.engine(), i), 4 * full_us).pictures;
+        EXPECT_EQ(shown, 0U) << "there is again";
+    }
+}
+
 TEST(PictureCache, NewPicturesAreBoughtWithinTheBudgetAndCharged) {
     for (const char* selector : {"best-first", "curve-budget", "threshold"}) {
         PictureWalk walk(test::forest_model(), {.selector = selector});
