@@ -1,5 +1,5 @@
-// Writes the recording that switches the light on a tour: a gamepad starts the tour, and then its other four buttons are pressed one after
-// the other, one each 0.7 s. bench_switch_recording SECONDS -> the text of a recording, for walk --input.
+// Writes the recording that switches the light on a tour: a gamepad starts the tour, and then its other four buttons are pressed
+// one after the other, one each 0.7 s. bench_switch_recording SECONDS -> the text of a recording, for walk --input.
 #include <fmt/format.h>
 
 #include <cmath>
