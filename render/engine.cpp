@@ -162,7 +162,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     // What is below the acuity anyway does not look softer.
     const auto sharper = static_cast<float>(prepare::resolved_rad(out) / model::pixel_angle(out.region.centre, viewport));
     const double with_effects = static_cast<double>(e.with_effects.load(std::memory_order_relaxed));
-    // Pictures take their time first, lose nothing, and look softer too.
+    // Pictures take their time first, lose hardly anything, and look softer too.
     const double pictures_us = static_cast<double>(e.set_pictures_us.load(std::memory_order_relaxed));
     const float all_value = out.curve.full_value + e.set_pictures_value.load(std::memory_order_relaxed);
     const double of_forms = all_value > 0.0F ? static_cast<double>(out.curve.full_value / all_value) : 1.0;

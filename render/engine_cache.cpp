@@ -165,6 +165,14 @@ void Engine::Impl::prepay_pictures(const prepare::PreparedFrame& set) {
     if (pictures_us > 0) offered.prepay({select::ItemKind::pictures, 0, static_cast<float>(pictures_us), 0});
 }
 
+/// Whether a frame without pictures could show all there is: what they save gone, all effects bought, at the full resolution.
+bool Engine::Impl::has_time_for_all(const prepare::PreparedFrame& set, float room_us) const {
+    if (drawn_resolution < (options.resolution > 0.0F ? options.resolution : 1.0F)) return false;
+    double needed_us = static_cast<double>(set.curve.cost.back()) + needed_share * pictures_save_us;
+    for (const select::Item& item : offered.offered()) needed_us += item.prepaid ? 0.0 : static_cast<double>(item.cost_us);
+    return static_cast<double>(room_us) >= needed_us;
+}
+
 /// What a new picture saves until it fails, at the rate at which this frame trades time for value.
 void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const select::SelectInput& input) {
     if (!pictures.any() || !course_known || rests) return;
@@ -190,11 +198,7 @@ void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const selec
     const double rate = std::max(1e-3 * static_cast<double>(a_ms), value_share * set.full_value / usual_budget_us);
     const bool promised = promised_rad > 0;
     const double buying = std::max(rate, (promised ? min_promised_share : min_rate_share) * set.full_value);
-    // As much as pictures save might be gone without them. Where more time than is left then shows nothing more, they are not
-    // needed.
-    const auto without_us = static_cast<float>(std::max(0.0, static_cast<double>(room_us) - needed_share * pictures_save_us));
-    const float more = set.curve.value_at(without_us + 1000.0F) - set.curve.value_at(without_us);
-    view.ample = by_budget && !promised && 1e-3 * static_cast<double>(more) <= min_rate_share * set.full_value;
+    view.ample = by_budget && !promised && has_time_for_all(set, room_us);
     view.picture_factor = picture_factor;
     view.us_per_value = by_budget && buying > 0 ? 1 / buying : 0.0;
     const std::span<const cache::CacheOffer> plan_of_pictures = pictures.plan(view);

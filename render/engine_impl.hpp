@@ -128,7 +128,7 @@ struct Engine::Impl {
     std::atomic<model::EffectMask> without = 0;  ///< PreparedFrame::without of the next sets
     std::atomic<model::EffectMask> unseen = 0;  ///< drawn_without() of the last selection, or since a change of switches or light
     std::atomic<float> with_effects{1};         ///< time of forms and bought effects together, as a multiple of the forms'
-    /// Of the pictures of the last selection's set: to draw them at full resolution, and full detail of what they show.
+    /// Of the pictures of the last selection's set: to draw them at full resolution, and the value of what they show.
     std::atomic<float> set_pictures_us{0}, set_pictures_value{0};
     std::atomic<float> light_hour{std::numeric_limits<float>::quiet_NaN()};  ///< of set_light()
     double promised_rad GUARDED_BY(draws) = 0;                               ///< error that the last cut was to keep; 0: none
@@ -205,6 +205,7 @@ struct Engine::Impl {
     void make_pictures() REQUIRES(draws);
     [[nodiscard]] double picture_us(cache::Index box, const Pose& pose) const REQUIRES(draws);
     void prepay_pictures(const prepare::PreparedFrame& set) REQUIRES(draws);
+    [[nodiscard]] bool has_time_for_all(const prepare::PreparedFrame& set, float room_us) const REQUIRES(draws);
     void offer_pictures(const prepare::PreparedFrame& set, const select::SelectInput& input) REQUIRES(draws);
     void take_pictures() REQUIRES(draws);
     void capture_pictures(SubmitReport& report) REQUIRES(draws);

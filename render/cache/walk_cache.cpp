@@ -84,8 +84,8 @@ void WalkCache::forget() {
     forgot_frame_ = frame_;
 }
 
-/// By how often pictures were forgotten lately. The time is not known to the frame, so it is never close: what is seldom
-/// forgotten stops no pictures. At least 1.
+/// By the time between the last changes. Nobody knows when the next one comes, so it is never expected at once: a light that
+/// seldom changes stops no pictures. At least 1.
 double WalkCache::frames_to_forget() const {
     const auto since = static_cast<double>(frame_ - forgot_frame_);
     if (!(since < 2 * forget_frames_)) return std::numeric_limits<double>::infinity();
@@ -479,6 +479,7 @@ void WalkCache::draw_below(Index i, const ViewPixels& pixels, const model::Frust
     if (box.child_count > 0 && (!valid || !pays_[i]))
         back_to_front(boxes_.tree(), box.first_child, box.child_count, pixels.eye,
                       [&](Index child) { draw_below(child, pixels, frustum); });
+    if (draws_.boxes.size() > shown) draws_.saves_us += static_cast<double>(across_us_[i]);  // of what lies across its children
     // One that does not pay is drawn for a set that was told of it, where its children have none.
     if (!valid || (box.child_count > 0 && !pays_[i] && draws_.unserved.size() == unserved)) return;
     draws_.boxes.resize(shown);

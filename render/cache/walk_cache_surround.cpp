@@ -54,7 +54,7 @@ void WalkCache::estimate(Index box, const PlanView& view) {
     }
     if (!known) {
         across_us_[box] = spent_share_ * price_us;
-        if (is_leaf) value_[box] = {value_a_px_ * static_cast<float>(pixels), 0};
+        if (is_leaf && !set_[box]) value_[box] = {value_a_px_ * static_cast<float>(pixels), 0};
         return;
     }
     known_us_ += static_cast<double>(across_us_[box]);

@@ -211,6 +211,26 @@ TEST(PictureCache, AFrameWithTimeForAllHasNoPictures) {
     }
 }
 
+/// Whether pictures are shown changes no more than once with each budget: they do not come and go by what they save themselves.
+TEST(PictureCache, PicturesDoNotComeAndGoWithWhatTheySave) {
+    for (const bool all_round : {false, true}) {
+        PictureWalk walk(test::forest_model(), {.selector = "best-first", .all_round = all_round});
+        const double full_us = walk.frame(along(walk.engine(), 0)).predicted_us;
+        int at = 1;
+        for (const double share : {0.4, 0.15, 0.8, 0.95, 1.05, 1.2}) {
+            int changes = 0;
+            bool shows = false;
+            for (int i = 0; i < 40; ++i, ++at) {
+                const bool now = walk.frame(along(walk.engine(), at), share * full_us).pictures > 0;
+                changes += i > 8 && now != shows ? 1 : 0;
+                shows = now;
+            }
+            EXPECT_LE(changes, 1) << share << (all_round ? ", all round" : "");
+            EXPECT_TRUE(shows || share != 0.4) << share;
+        }
+    }
+}
+
 TEST(PictureCache, NewPicturesAreBoughtWithinTheBudgetAndCharged) {
     for (const char* selector : {"best-first", "curve-budget", "threshold"}) {
         PictureWalk walk(test::forest_model(), {.selector = selector});

@@ -8,9 +8,11 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -324,6 +326,18 @@ TEST(Recorder, KeepsEveryRecordInOrderOnAThreadOfItsOwnName) {
     EXPECT_EQ(seen, 2000U);
     ASSERT_EQ(recorder.records().size(), 2000U);
     for (std::uint64_t i = 0; i < 2000; ++i) ASSERT_EQ(recorder.records()[i].frame, i);
+}
+
+TEST(Recorder, HandsTheFirstRecordOverSoonHoweverSeldomItLooksLater) {
+    SpscRing<FrameRecord> ring(64);
+    std::promise<void> came;
+    RecorderOptions options;
+    options.poll_ns = 3600 * 1000 * ms;
+    options.on_record = [&](const FrameRecord&) { came.set_value(); };
+    Recorder recorder(ring, options);
+    ring.try_push(FrameRecord{});
+    EXPECT_EQ(came.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
+    recorder.stop();
 }
 
 TEST(FrameCore, IsTheLastIsolatedOneElseTheLastThatIsAllowed) {
