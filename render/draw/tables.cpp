@@ -127,8 +127,9 @@ DrawTables make_tables(const model::Model& model) {
 
 vec3 eye_in_frame(const Placed& placed, const dvec3& eye) {
     mat3 linear;
+    std::size_t at = 0;  // by rows
     for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) linear[column][row] = placed.rows[static_cast<std::size_t>(3 * row + column)];
+        for (int column = 0; column < 3; ++column) linear[column][row] = placed.rows[at++];
     return model::eye_in_frame(placed.origin, linear, eye);
 }
 

@@ -240,7 +240,7 @@ TEST(WalkCacheRun, BesideWhatIsTransparentNoPictureIsMadeInVain) {
     std::vector<Box> blended;
     for (int i = 0; i < 60; ++i) {
         const dvec3 at = any_in(random, dvec3(2 * side_m, -side_m, -side_m), dvec3(3 * side_m, 2 * side_m, 2 * side_m));
-        blended.emplace_back(at, at + dvec3(0.5));
+        blended.push_back({at, at + dvec3(0.5)});
     }
     CacheRun run(7, false, 24, blended);
     for (int i = 0; i < 100; ++i) ASSERT_TRUE(run.stand()) << i;
