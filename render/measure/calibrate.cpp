@@ -359,8 +359,7 @@ Result<void> Run::levers(Calibration& out) {
 }
 
 /// With and without each effect in turns; which one comes first changes as well. The median of the pairs' differences counts, and
-/// the second largest of five rounds. Some seconds show half of what an effect takes, and one that is priced too cheap makes
-/// frames late. Other seconds show twice as much, and one of them alone must not count.
+/// the median of five rounds: some seconds show half of what an effect takes, and others twice as much.
 Result<void> Run::prices(Calibration& out) {
     const int pairs = options_.quick ? 5 : 13;
     constexpr std::size_t rounds = 5;
@@ -385,14 +384,11 @@ Result<void> Run::prices(Calibration& out) {
         submits[c % cells][c / cells] = median_of(std::move(submit));
         rasters[c % cells][c / cells] = median_of(std::move(raster));
     }
-    const auto second_largest = [](std::array<double, rounds>& of) {
-        std::sort(of.begin(), of.end());
-        return std::max(0.0, of[rounds - 2]);
-    };
+    const auto typical = [](const std::array<double, rounds>& of) { return std::max(0.0, median_of({of.begin(), of.end()})); };
     std::vector<PricePoint> points;
     for (std::size_t c = 0; c < cells; ++c) {
         const PriceCell& cell = scene_.prices[c];
-        points.push_back({cell.effect, cell.triangles, cell.pixels, second_largest(submits[c]), second_largest(rasters[c])});
+        points.push_back({cell.effect, cell.triangles, cell.pixels, typical(submits[c]), typical(rasters[c])});
     }
     out.costs.prices = fit_prices(points);
     out.costs.prices_measured = !out.costs.prices.empty();
