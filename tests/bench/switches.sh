@@ -10,7 +10,7 @@ switch_steering() { # FILE ACTION...
   for action; do printf '[[device.button]]\ncontrol = "button-%s"\naction = "%s"\n' "$((button++))" "$action" >>"$file"; done
 }
 
-# changes FILE: how often a part of the light went on or off in a ledger.
+# light_changes FILE: how often a part of the light went on or off in a ledger.
 light_changes() {
   awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^(sunlight|shadows|lamps|fog)$/) part[i] = 1; next }
     { for (i in part) { if (NR > 2 && $i != last[i]) ++n; last[i] = $i } } END { print n + 0 }' "$1"
