@@ -115,6 +115,43 @@ TEST(Incidents, KeepTheMissedFrameThatIsTheirs) {
     }
 }
 
+TEST(Incidents, KeepTheirMissedFrameWhenOthersMissAfterThem) {
+    constexpr std::int64_t second = 1'000'000'000;
+    OfferedFrames offered;
+    EXPECT_EQ(offered.last_of(0, 1000), nullptr);
+    for (std::int64_t i = 0; i <= 40; ++i) offered.add({static_cast<std::uint64_t>(100 + 5 * i), {}}, second + i * second / 20);
+    ASSERT_NE(offered.last_of(100, 199), nullptr) << "misses went on for two seconds";
+    EXPECT_EQ(offered.last_of(100, 199)->frame, 150U) << "one each half second: 100, 150, and so on";
+    EXPECT_EQ(offered.last_of(151, 199), nullptr);
+    EXPECT_EQ(offered.last_of(0, 1000)->frame, 300U);
+    offered.add({400, {}}, 6 * second);
+    EXPECT_EQ(offered.last_of(0, 199), nullptr) << "older than four seconds";
+    EXPECT_EQ(offered.last_of(0, 399)->frame, 300U);
+    EXPECT_EQ(offered.last_of(0, 1000)->frame, 400U);
+    offered.add({3, {}}, 6 * second + 1);
+    EXPECT_EQ(offered.last_of(0, 1000)->frame, 3U) << "another walk has begun: its frames are numbered anew";
+}
+
+TEST(Incidents, AMissAfterTheBurstDoesNotTakeTheBurstsFrame) {
+    const TemporaryFolder folder;
+    rt::IncidentRecorderOptions options;
+    options.after_s = 0.05;
+    rt::IncidentRecorder recorder(options);
+    recorder.begin(10'000'000);
+    std::string message;
+    auto writer = IncidentWriter::start(folder / "incidents", recorder, {}, [&](std::string_view text) { message = text; });
+    ASSERT_TRUE(writer.ok()) << writer.error().text();
+    const auto frame = [](const char* text) { return [text](const std::string& file) { return write_text(file, text); }; };
+    (*writer)->offer({101, frame("of the burst")});
+    (*writer)->offer({500, frame("of another")});
+    for (const rt::FrameRecord& record : an_incident(1).records) recorder.add(record);
+    ASSERT_TRUE(test::eventually(5, [&] { return (*writer)->written() == 1; }));
+    writer->reset();
+    ASSERT_FALSE(message.empty());
+    const std::string incident = folder / "incidents/" + *names_in(folder / "incidents").begin();
+    EXPECT_EQ(*read_text(incident + "/frame.capture"), "of the burst") << message;
+}
+
 TEST(Incidents, AFullDiskIsReportedOnceAndSurvived) {
     const TemporaryFolder folder;
     const std::string dir = folder / "incidents";

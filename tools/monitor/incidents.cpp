@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "rt/base/file.hpp"
+#include "rt/clock/clock.hpp"
 #include "rt/threads/placement.hpp"
 #include "tools/report/report.hpp"
 
@@ -176,16 +177,30 @@ void IncidentWriter::run() {
     }
 }
 
+void OfferedFrames::add(MissedFrame missed, std::int64_t now_ns) {
+    while (!kept_.empty() && now_ns - kept_.front().at_ns > kept_ns) kept_.pop_front();
+    if (!kept_.empty() && missed.frame < kept_.back().missed.frame) kept_.clear();  // another walk began
+    if (!kept_.empty() && now_ns - kept_.back().at_ns < apart_ns) return;
+    kept_.push_back({now_ns, std::move(missed)});
+}
+
+const MissedFrame* OfferedFrames::last_of(std::uint64_t first, std::uint64_t last) const {
+    for (auto at = kept_.rbegin(); at != kept_.rend(); ++at)
+        if (at->missed.frame >= first && at->missed.frame <= last) return &at->missed;
+    return nullptr;
+}
+
 void IncidentWriter::offer(MissedFrame missed) {
     const MutexLock lock(missed_mutex_);
-    missed_ = std::move(missed);
+    missed_.add(std::move(missed), rt::monotonic_ns());
 }
 
 bool IncidentWriter::write(const rt::IncidentRecorder::Incident& incident) {
     MissedFrame missed;
     {
         const MutexLock lock(missed_mutex_);
-        missed = missed_;
+        const std::uint64_t last = incident.records.empty() ? incident.first_frame : incident.records.back().frame;
+        if (const MissedFrame* of_burst = missed_.last_of(incident.first_frame, last)) missed = *of_burst;
     }
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     const auto folder =

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -28,6 +29,26 @@ struct MissedFrame {
     std::function<Result<void>(const std::string& file)> write;
 };
 
+/// The missed frames of the last seconds, for an incident that is written later. One each half second is kept: then those of a
+/// burst outlive the misses after it, and no more than nine are held. Pure; one thread at a time.
+class OfferedFrames {
+public:
+    static constexpr std::int64_t apart_ns = 500'000'000, kept_ns = 4'000'000'000;
+    /// `now_ns` never goes back; a smaller frame number is of a new walk. The frame is dropped if the last one was kept less than
+    /// half a second ago.
+    void add(MissedFrame missed, std::int64_t now_ns);
+    /// The last one kept of frames `first` to `last`; null if there is none.
+    [[nodiscard]] const MissedFrame* last_of(std::uint64_t first, std::uint64_t last) const;
+
+private:
+    /// A frame, and when it was offered.
+    struct Offered {
+        std::int64_t at_ns = 0;
+        MissedFrame missed;
+    };
+    std::deque<Offered> kept_;
+};
+
 /// DIR/incident-20260102T030405Z-000017/{incident.json, ledger.csv, trace.json, frame.capture}: a folder appears only when
 /// it is complete. Other files in DIR are not touched.
 class IncidentWriter {
@@ -42,7 +63,7 @@ public:
     IncidentWriter(const IncidentWriter&) = delete;
     IncidentWriter& operator=(const IncidentWriter&) = delete;
 
-    /// Any thread. The frame goes into the next incident that it belongs to; a later frame replaces it.
+    /// Any thread. The frame goes into the next incident that it belongs to, as OfferedFrames chooses.
     void offer(MissedFrame missed) EXCLUDES(missed_mutex_);
 
     [[nodiscard]] std::uint64_t written() const { return written_.load(std::memory_order_acquire); }
@@ -62,7 +83,7 @@ private:
     [[no_unique_address]] ThreadRole writes_;  ///< the thread below
     bool failing_ GUARDED_BY(writes_) = false;
     Mutex missed_mutex_;
-    MissedFrame missed_ GUARDED_BY(missed_mutex_);
+    OfferedFrames missed_ GUARDED_BY(missed_mutex_);
     std::atomic<std::uint64_t> written_{0}, failed_{0};
     std::thread thread_;
 };
