@@ -16,6 +16,7 @@
 #include "render/measure/calibrate_fit.hpp"
 #include "render/measure/calibrate_run.hpp"
 #include "rt/base/random.hpp"
+#include "tests/measure/quick_table.hpp"
 
 namespace surefoot {
 namespace {
@@ -372,12 +373,10 @@ TEST(FitPrices, recovers_prices_and_never_pays_for_an_effect) {
 }
 
 TEST(Calibrate, measures_a_table_that_predicts_more_for_more) {
-    measure::CalibrateOptions options;
-    options.quick = true;
-    options.device.viewport = {320, 180};
+    const measure::CalibrateOptions options = measure::test::quick_options();
     const auto probe = gl::open_device(options.device);
     if (!probe) GTEST_SKIP() << probe.error().text();
-    const auto c = measure::calibrate(options, {});
+    const auto& c = measure::test::quick_table();
     ASSERT_TRUE(c.ok()) << c.error().text();
     EXPECT_TRUE(c->costs.calibrated);
     EXPECT_EQ(c->costs.grids.size(), 4U);

@@ -12,16 +12,17 @@
 #include "render/measure/calibrate_scene.hpp"
 #include "render/model/item_costs.hpp"
 #include "rt/base/statistics.hpp"
+#include "tests/measure/quick_table.hpp"
 
 namespace surefoot::measure {
 namespace {
 
-constexpr model::Viewport priced_view{320, 180};
+using test::quick_view;
 
 /// Its lit textured items have all effects with a price, and light at the vertices: by the pixel, others would cost more than
 /// their prices say. Sizes lie between those that were measured.
 CalibrationScene with_all_effects() {
-    CalibrationScene scene = make_calibration_scene(priced_view, true, 77);
+    CalibrationScene scene = make_calibration_scene(quick_view, true, 77);
     for (model::Material& material : scene.model.materials)
         if (material.effects == (model::effect_texture | model::effect_sun))
             for (const model::EffectPrice& price : effects::usual_prices())
@@ -60,7 +61,7 @@ std::pair<gl::DrawItem, float> largest_item(const CalibrationScene& scene, const
         for (const gl::DrawItem& item : cell.items) {
             float pixels = 0;
             static_cast<void>(costs.of(item.rep, scene.model.nodes[item.node].box, dvec3(0),
-                                       model::make_view_scale(Pose{}, priced_view), pixels));
+                                       model::make_view_scale(Pose{}, quick_view), pixels));
             if (pixels > largest.second) largest = {item, pixels};
         }
     }
@@ -68,15 +69,13 @@ std::pair<gl::DrawItem, float> largest_item(const CalibrationScene& scene, const
 }
 
 TEST(EffectPrices, PredictWhatEachAddsToASceneWithAllOfThem) {
-    CalibrateOptions options;
-    options.quick = true;
-    options.device.viewport = priced_view;
+    const CalibrateOptions options = test::quick_options();
     {
         const auto probe = gl::open_device(options.device);
         if (!probe && probe.error().kind == ErrorKind::unsupported) GTEST_SKIP() << probe.error().text();
         ASSERT_TRUE(probe.ok()) << probe.error().text();
     }
-    const auto table = calibrate(options, {});
+    const auto& table = test::quick_table();
     ASSERT_TRUE(table.ok()) << table.error().text();
     const CalibrationScene scene = with_all_effects();
     const model::ItemCosts costs(scene.model, table->costs);
@@ -106,7 +105,7 @@ TEST(EffectPrices, PredictWhatEachAddsToASceneWithAllOfThem) {
             for (const gl::DrawItem& item : cell->items) {
                 float pixels = 0;
                 static_cast<void>(costs.of(item.rep, scene.model.nodes[item.node].box, dvec3(0),
-                                           model::make_view_scale(Pose{}, priced_view), pixels));
+                                           model::make_view_scale(Pose{}, quick_view), pixels));
                 const model::ItemCost added = costs.of_effects(item.rep, pixels, effect);
                 predicted += static_cast<double>(added.submit_us + added.raster_us);
             }
