@@ -19,12 +19,15 @@ namespace surefoot::bench {
 struct RayHit {
     double away_m = 0;
     dvec3 normal{0.0};  ///< of the triangle's front, unit
+    bool pane = false;  ///< what is transparent
 };
 
-/// All that is not transparent, where it stands at rest. The model must outlive it.
+/// All triangles where they stand at rest. The model must outlive it.
 class DetailRays {
 public:
-    enum class Sides { shown, both };  ///< shown: backs of one-sided materials let rays through
+    /// shown: what a picture shows, panes included; backs of one-sided materials let rays through. hiding: both sides of all that
+    /// is not transparent.
+    enum class Sides { shown, hiding };
 
     explicit DetailRays(const model::Model& model) : model_(model), middle_(model.nodes[0].box.centre()) {
         for (const model::Node& node : model.nodes)
@@ -40,7 +43,7 @@ public:
         return hit_of(s);
     }
     [[nodiscard]] bool blocked(const dvec3& from, const dvec3& way) const {
-        Search s = search(from, way, Sides::both);
+        Search s = search(from, way, Sides::hiding);
         s.any = true;
         cross(s);
         return s.found != model::none;
@@ -75,7 +78,6 @@ private:
         const bool mirrored = glm::determinant(place.linear) < 0;
         for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
             const model::Part& part = model_.parts[p];
-            if (model_.materials[part.material].alpha == model::AlphaMode::blend) continue;
             for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) {
                 std::array<std::uint32_t, 3> vertex{};
                 for (std::uint32_t k = 0; k < 3; ++k) vertex[k] = part.first_vertex + model_.indices[part.first_index + i + k];
@@ -141,7 +143,8 @@ private:
     [[nodiscard]] std::optional<RayHit> hit_of(const Search& s) const {
         if (s.found == model::none) return {};
         const Triangle& t = triangles_[s.found];
-        return RayHit{s.until, glm::normalize(glm::cross(dvec3(t.u), dvec3(t.v)))};
+        const bool pane = model_.materials[model_.parts[t.part].material].alpha == model::AlphaMode::blend;
+        return RayHit{s.until, glm::normalize(glm::cross(dvec3(t.u), dvec3(t.v))), pane};
     }
     static bool enters(const Search& s, const Node& node) {
         const vec3 a = (node.low - s.from) * s.inverse, b = (node.high - s.from) * s.inverse;
@@ -171,7 +174,7 @@ private:
         const float area = glm::dot(t.u, p);  // above 0: the front is met
         if (area == 0) return;
         const model::Material& material = model_.materials[model_.parts[t.part].material];
-        if (s.sides == Sides::shown && area < 0 && !material.two_sided) return;
+        if (s.sides == Sides::shown ? area < 0 && !material.two_sided : material.alpha == model::AlphaMode::blend) return;
         const vec3 off = s.from - t.corner;
         const float a = glm::dot(off, p) / area;
         if (!(a >= 0 && a <= 1)) return;

@@ -2,7 +2,8 @@
 // to the sun for each pixel. Frames of full detail are drawn in turns; counted is the CPU time of the process.
 //
 // The map is the device's own for what moves, 512 x 512 texels with 2 x 2 of them compared. Here all that is opaque casts and all
-// that the sun lights receives. It is a square about a place before the eye; what is beyond it is in the sun.
+// that the sun lights receives. It is a square about a place before the eye; what is beyond it is in the sun. Pixels that show a
+// pane or water do not count: they show two surfaces.
 // bench_shadow_methods MODEL.walk [POSES 4] [ROUNDS 5] [FOLDER] -> one JSON object, with h8, h12 and h18. With a folder
 // it writes the pictures.
 #include <fmt/format.h>
@@ -197,6 +198,9 @@ public:
         for (const Method& method : all) texts.push_back(fmt::format(R"("{}": {})", method.name, text(method)));
         return fmt::format(R"("h{:.0f}": {{{}}})", hour, fmt::join(texts, ", "));
     }
+    [[nodiscard]] double panes_percent() const {
+        return 100.0 * double(pane_pixels_) / double(std::max<std::size_t>(pixels_, 1));
+    }
     void end() {
         device_->draws.plays();
         device_->release();
@@ -225,9 +229,10 @@ private:
         if (image) return *image;
         return {viewport.width, viewport.height, std::vector<std::uint8_t>(std::size_t{4} * viewport.width * viewport.height)};
     }
-    /// With all of the sun where a ray meets nothing, and without the sun elsewhere.
-    gl::PixelImage truth(const gl::PixelImage& lit, const gl::PixelImage& dark) const {
+    /// With all of the sun where a ray meets nothing, and without the sun elsewhere. Finds the pixels that show a pane.
+    gl::PixelImage truth(const gl::PixelImage& lit, const gl::PixelImage& dark) {
         gl::PixelImage out = dark;
+        panes_.clear();
         const dvec3 towards = glm::normalize(dvec3(light_.sun_direction));
         const double half_y = std::tan(0.5 * eye_.fov_y_rad), half_x = half_y * viewport.width / viewport.height;
         for (std::uint32_t y = 0; y < viewport.height; ++y)
@@ -237,6 +242,7 @@ private:
                 const dvec3 way = glm::normalize(eye_.forward() + eye_.right() * (half_x * (2 * (x + 0.5) / viewport.width - 1)) -
                                                  eye_.up() * (half_y * (2 * (y + 0.5) / viewport.height - 1)));
                 const auto hit = rays_.nearest(eye_.position, way, DetailRays::Sides::shown);
+                if (hit && hit->pane) panes_.push_back(at);
                 if (hit) {
                     const dvec3 off = glm::dot(hit->normal, towards) < 0 ? -hit->normal : hit->normal;
                     if (rays_.blocked(eye_.position + hit->away_m * way + lift_m * off, towards)) continue;
@@ -251,6 +257,8 @@ private:
         const gl::PixelImage dark = picture(sunless, all[0], nullptr), lit = picture(light_, all[0], nullptr);
         const gl::PixelImage expected = truth(lit, dark);
         write(expected, name, "rays");
+        pane_pixels_ += panes_.size();
+        pixels_ += expected.rgba.size() / 4;
         std::vector<SunMap> maps(all.size());
         for (std::size_t i = 0; i < all.size(); ++i) {
             Method& method = all[i];
@@ -258,8 +266,9 @@ private:
             method.casters = std::max(method.casters, maps[i].casters.size());
             method.cast_triangles = std::max(method.cast_triangles, maps[i].triangles);
             if (method.shows_map && !(method.radius_m > 0)) continue;
-            const gl::PixelImage shown = picture(light_, method, maps[i].casters.empty() ? nullptr : &maps[i]);
+            gl::PixelImage shown = picture(light_, method, maps[i].casters.empty() ? nullptr : &maps[i]);
             write(shown, name, method.name);
+            for (const std::ptrdiff_t at : panes_) std::copy_n(expected.rgba.begin() + at, 4, shown.rgba.begin() + at);
             method.mse.push_back(measure::snr(shown.rgba, expected.rgba).mse);
             method.ssim.push_back(measure::ssim(shown.rgba, expected.rgba, viewport.width, viewport.height));
             method.flip.push_back(measure::flip(shown.rgba, expected.rgba, viewport.width, viewport.height));
@@ -315,6 +324,8 @@ private:
     model::EffectMask always_hidden_ = 0;
     Pose eye_;
     std::vector<gl::DrawItem> items_;
+    std::vector<std::ptrdiff_t> panes_;  ///< bytes of pixels that do not count
+    std::size_t pane_pixels_ = 0, pixels_ = 0;
 };
 
 /// Rays between random places of the model: the tree must find what trying every triangle finds.
@@ -329,7 +340,7 @@ bool rays_are_right(const model::Model& m, const DetailRays& rays) {
     std::size_t met = 0;
     for (int i = 0; i < 60; ++i) {
         const dvec3 from = place(), way = glm::normalize(place() - from);
-        const auto sides = i % 2 == 0 ? DetailRays::Sides::both : DetailRays::Sides::shown;
+        const auto sides = i % 2 == 0 ? DetailRays::Sides::hiding : DetailRays::Sides::shown;
         const auto found = rays.nearest(from, way, sides), expected = rays.tried(from, way, sides);
         if (found.has_value() != expected.has_value() || (found && found->away_m != expected->away_m)) return false;
         if (i % 2 == 0 && rays.blocked(from, way) != expected.has_value()) return false;
@@ -369,6 +380,7 @@ int main(int argc, char** argv) {
     std::vector<std::string> texts;
     for (const double hour : hours) texts.push_back(shadows.at_hour(hour, path->path, poses, rounds));
     shadows.end();
-    fmt::print("{{\"poses\": {}, \"triangles\": {}, {}}}\n", poses, rays.triangles(), fmt::join(texts, ", "));
+    fmt::print("{{\"poses\": {}, \"triangles\": {}, \"panes_percent\": {:.2f}, {}}}\n", poses, rays.triangles(),
+               shadows.panes_percent(), fmt::join(texts, ", "));
     return 0;
 }
