@@ -8,17 +8,19 @@ shadow_of=(--command "tests/bench/run shadows")
 
 # WORK/shadows/shadows.jpg: rows are methods, columns hours, all of one pose.
 shadow_picture() { # POSE MAP
-  local at=$work/shadows method hour strip
+  local at=$work/shadows method hour label strip
   command -v convert >/dev/null || { echo "tests/bench/run: convert is not installed (Debian: imagemagick); no shadows.jpg" >&2; return 0; }
   for method in none baked "$2" rays; do
     strip=()
     for hour in "${shadow_hours[@]}"; do
-      strip+=('(' "$(printf '%s/%02dh-%s-%s.png' "$at" "$hour" "$1" "$method")" -resize 480x270 -gravity northwest -pointsize 15 -fill white
-        -undercolor '#0008' -annotate +4+4 " $hour h, ${method//_/ } " ')')
+      label=${method//_/ }
+      [[ $method != none ]] || label='no shadows'
+      strip+=('(' "$(printf '%s/%02dh-%s-%s.png' "$at" "$hour" "$1" "$method")" -resize 440x248 -gravity northwest -pointsize 15 -fill white
+        -undercolor '#000c' -annotate +4+4 " $hour h, $label " ')')
     done
     convert "${strip[@]}" +append "$at/strip-$method.png" || { failed=1; return 0; }
   done
-  convert "$at"/strip-{none,baked,"$2",rays}.png -append -strip -quality 72 "$at/shadows.jpg" || failed=1
+  convert "$at"/strip-{none,baked,"$2",rays}.png -append -strip -quality 62 "$at/shadows.jpg" || failed=1
   echo "tests/bench/run: $at/shadows.jpg: rows none, baked, ${2//_/ }, rays; columns ${shadow_hours[*]} h" >&2
 }
 
@@ -35,7 +37,7 @@ shadows_group() {
   rm -rf "$work/shadows"
   mkdir -p "$work/shadows"
   measure shadows "$build/tests/bench_shadow_methods" "$work/lamps.walk" "$poses" 5 "$work/shadows" || return 0
-  shadow_picture "${SUREFOOT_SHADOW_POSE:-0}" map_60_m
+  shadow_picture "$((poses / 2))" map_60_m
   [[ -z "${SUREFOOT_SHADOW_POSES:-}" ]] || return 0
   for hour in "${shadow_hours[@]}"; do
     shadow_takes shadow_baked_percent "$hour" baked
