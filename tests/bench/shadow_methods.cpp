@@ -98,7 +98,8 @@ struct SunMap {
     std::uint64_t triangles = 0;
 };
 
-/// As the product plans its own map, but for what it holds.
+/// As the product plans its own map, but for what it holds. That takes the coarsest such form, which may be full detail without
+/// what its masks hide: more triangles.
 class MapPlan {
 public:
     MapPlan(const model::Model& m, const Pose& eye, const vec3& towards, double radius_m) : m_(m), half_m_(radius_m) {
@@ -132,7 +133,7 @@ private:
         }
         return out;
     }
-    /// The coarsest form that is off by a texel at most. What reaches over the rim casts nothing.
+    /// Of the forms that are off by a texel at most, the one with the fewest triangles. What reaches over the rim casts nothing.
     void add(Index index) {
         const model::Node& node = m_.nodes[index];
         const Box box = along(node.box);
@@ -142,12 +143,16 @@ private:
         if (beside) return;
         const bool whole = box.min.x >= middle_.x - inside_m && box.max.x <= middle_.x + inside_m &&
                            box.min.y >= middle_.y - inside_m && box.max.y <= middle_.y + inside_m;
+        Index best = model::none;
         for (Index r = node.first_rep; whole && r < node.first_rep + node.rep_count; ++r) {
             const bool finest = node.child_count == 0 && r + 1 == node.first_rep + node.rep_count;
             if (m_.reps[r].error_m > map_.view.texel_m && !finest) continue;
             if (model::casting_of(m_, m_.reps[r]) != model::Casting::casts) continue;
-            map_.casters.push_back({index, r});
-            map_.triangles += m_.reps[r].triangles;
+            if (best == model::none || m_.reps[r].triangles < m_.reps[best].triangles) best = r;
+        }
+        if (best != model::none) {
+            map_.casters.push_back({index, best});
+            map_.triangles += m_.reps[best].triangles;
             return;
         }
         for (Index c = 0; c < node.child_count; ++c) add(node.first_child + c);
