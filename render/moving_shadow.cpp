@@ -177,15 +177,19 @@ bool MovingShadow::fit(const ShadowScene& scene) {
     return true;
 }
 
-/// The coarsest form that is off by a texel at most; of children, where the node has none and all of them fit. False: the map is
-/// full.
+/// Of the forms that are off by a texel at most, the one with the fewest triangles: a coarser one may have more, where full
+/// detail was cut to its masks. Of children, where the node has none and all of them fit. False: the map is full.
 bool MovingShadow::choose_forms(const ShadowScene& scene, Index index) {
     if (items_.size() == limits_.items) return false;
     const model::Model& m = scene.model;
     const model::Node& node = m.nodes[index];
+    Index best = model::none;
     for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
         if (m.reps[r].error_m > view_.texel_m || !casts_[r]) continue;
-        items_.push_back({index, r});
+        if (best == model::none || m.reps[r].triangles < m.reps[best].triangles) best = r;
+    }
+    if (best != model::none) {
+        items_.push_back({index, best});
         return true;
     }
     const Index motion = model::motion_of(m, node);

@@ -45,6 +45,22 @@ TEST(MovingShadow, HoldsAllThatCastsWithARimOfSun) {
     }
 }
 
+TEST(MovingShadow, HoldsTheFormWithTheFewestTrianglesOfThoseThatAreNear) {
+    model::Model m = baked_lawn();
+    PlannedLawn lawn(m);
+    ASSERT_TRUE(lawn.shadow.plan(lawn.at(1), eye_of_lawn));
+    const model::Node& ball = m.nodes[lawn.shadow.items()[0].node];
+    ASSERT_GE(ball.rep_count, 3U);
+    const float near_m = 0.5F * lawn.shadow.view().texel_m;
+    for (Index r = 0; r < ball.rep_count; ++r) {  // the coarser, the more: as where full detail was cut to its masks
+        model::Representation& rep = m.reps[ball.first_rep + r];
+        rep.triangles = 1000 - 10 * r;
+        rep.error_m = r + 1 < ball.rep_count ? near_m : 2 * lawn.shadow.view().texel_m;
+    }
+    ASSERT_TRUE(lawn.shadow.plan(lawn.at(1), eye_of_lawn));
+    EXPECT_EQ(lawn.shadow.items()[0].rep, ball.first_rep + ball.rep_count - 2) << "the last one has fewer, but is too far off";
+}
+
 TEST(MovingShadow, AnOldMapIsShownWhileItIsOffByLittleAndNotTooOld) {
     PlannedLawn lawn;
     ASSERT_TRUE(lawn.shadow.plan(lawn.at(1), eye_of_lawn));
