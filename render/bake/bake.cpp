@@ -15,6 +15,7 @@
 
 #include "render/bake/alpha_bleed.hpp"
 #include "render/bake/boxes.hpp"
+#include "render/bake/closed_pieces.hpp"
 #include "render/bake/cluster_coverage.hpp"
 #include "render/bake/ground.hpp"
 #include "render/bake/limits.hpp"
@@ -38,6 +39,7 @@ constexpr std::uint32_t min_box_triangles = 64, min_piece_box_triangles = 256, m
 constexpr std::uint64_t min_apart = 16;                         // a share of the triangles: 1/16
 constexpr std::uint32_t max_box_cell = 32, min_box_cell = 16;   // texels of a face's picture, with its rim
 constexpr std::size_t max_box_bytes = std::size_t{128} << 20U;  // of all pictures of boxes while they are judged
+const ForAll all_cores = [](std::size_t count, const std::function<void(std::size_t)>& body) { for_all(count, body); };
 /// Six faces of four bytes a texel, and mip levels.
 constexpr std::size_t box_bytes(std::uint32_t cell) { return std::size_t{32} * cell * cell; }
 
@@ -180,6 +182,7 @@ bool BakeContext::make_forms() {
     });
     for (const auto& of_mesh : notes)
         model.provenance.warnings.insert(model.provenance.warnings.end(), of_mesh.begin(), of_mesh.end());
+    if (go && rays && !options.whole_objects) go = find_closed_pieces(by_mesh, objects, model, *rays, progress);
     if (go) adopt_forms(std::move(by_mesh));
     return go;
 }
@@ -189,8 +192,8 @@ void BakeContext::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
     std::vector<std::uint32_t> first(by_mesh.size()), count(by_mesh.size());
     for (std::size_t m = 0; m < by_mesh.size(); ++m) {
         first[m] = static_cast<std::uint32_t>(forms.size());
-        count[m] = static_cast<std::uint32_t>(by_mesh[m].size());
-        for (MeshForm& form : by_mesh[m]) forms.push_back(std::move(form));
+        for (MeshForm& form : share_places(std::move(by_mesh[m]))) forms.push_back(std::move(form));
+        count[m] = static_cast<std::uint32_t>(forms.size()) - first[m];
     }
     objects = with_forms(objects, forms, first, count);
 }
@@ -198,8 +201,8 @@ void BakeContext::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
 /// What sees the sky, mesh by mesh; empty where light is not measured, and where objects stay whole.
 std::vector<SkySides> BakeContext::find_sides(const std::vector<Geometry>& geometries) const {
     if (!rays || options.whole_objects) return std::vector<SkySides>(geometries.size());
-    std::vector<MeshInPlaces> meshes(geometries.size());
-    for (std::size_t m = 0; m < meshes.size(); ++m) meshes[m].geometry = &geometries[m];
+    std::vector<MeshInPlaces> meshes;
+    for (const Geometry& geometry : geometries) meshes.push_back({&geometry, {}});
     for (const PlacedObject& object : objects) meshes[object.mesh].places.push_back(object.world);
     return find_scene_sides(meshes, model, *rays, progress);
 }
@@ -333,9 +336,8 @@ bool BakeContext::mend_clusters() {
         const std::size_t c = entities[n] - objects.size();
         chains[n] = {&clusters[c].chain, tree.clusters[c].displacement_m};
     }
-    const auto all = [](std::size_t n, const std::function<void(std::size_t)>& body) { for_all(n, body); };
     Stage stage(progress, "coverage", mend_steps(model));
-    const std::optional<bool> changed = bake::mend_clusters(model, chains, all, [&] { return stage.step(); });
+    const std::optional<bool> changed = bake::mend_clusters(model, chains, all_cores, [&] { return stage.step(); });
     if (changed.value_or(false)) emit();
     return changed.has_value();
 }
@@ -377,9 +379,8 @@ std::optional<PlacedBoxes> BakeContext::add_boxes() {
     std::uint32_t cell = request.textured ? max_box_cell : min_box_cell;
     if (box_bytes(cell) * count > max_box_bytes) cell = min_box_cell;
     request.pixels = face_pixels(cell);
-    const auto all = [](std::size_t n, const std::function<void(std::size_t)>& body) { for_all(n, body); };
     Stage stage(progress, "boxes", box_steps(model, request) + entities.size());
-    std::vector<BoxForm> boxes = capture_boxes(model, request, all, [&] { return stage.step(); });
+    std::vector<BoxForm> boxes = capture_boxes(model, request, all_cores, [&] { return stage.step(); });
     if (boxes.empty()) return {};
     const ProxyInput input = proxy_input();
     std::atomic<bool> go{true};
@@ -428,9 +429,7 @@ bool BakeContext::measure_light() {
 
 bool BakeContext::measure_pictures() {
     Stage stage(progress, "pictures", loss_steps(model));
-    MeasuredLosses measured = measure_losses(
-        model, [](std::size_t count, const std::function<void(std::size_t)>& body) { for_all(count, body); },
-        [&] { return stage.step(); });
+    MeasuredLosses measured = measure_losses(model, all_cores, [&] { return stage.step(); });
     covered = std::move(measured.covered);
     measured.move_to(model);
     return !model.losses.empty();

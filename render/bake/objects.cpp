@@ -318,23 +318,9 @@ MeshForm make_form(Geometry geometry, const ChainOptions& options) {
     return form;
 }
 
-/// Adds the form, or two: one that serves the places where no vertex sees sky, and one for the others.
 void add_form(MeshForm form, const std::vector<std::uint32_t>& used, const SkySides& sides, std::vector<MeshForm>& out) {
-    std::vector<bool> closed;
     for (std::size_t p = 0; p < sides.places; ++p)
-        closed.push_back(std::none_of(used.begin(), used.end(), [&](std::uint32_t v) { return sides.is_open(p, v); }));
-    const auto count = static_cast<std::size_t>(std::count(closed.begin(), closed.end(), true));
-    form.closed = count > 0 && count == closed.size();
-    if (count == 0 || form.closed) {
-        out.push_back(std::move(form));
-        return;
-    }
-    MeshForm in_rooms = form;
-    in_rooms.closed = true;
-    in_rooms.serves = closed;
-    closed.flip();
-    form.serves = std::move(closed);
-    out.push_back(std::move(in_rooms));
+        form.closed_in.push_back(std::none_of(used.begin(), used.end(), [&](std::uint32_t v) { return sides.is_open(p, v); }));
     out.push_back(std::move(form));
 }
 
@@ -368,6 +354,27 @@ std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, con
     of_piece.is_piece = true;
     for (CutPiece& piece : pieces) add_form(make_form(std::move(piece.geometry), of_piece), piece.used, sides, forms);
     return forms;
+}
+
+std::vector<MeshForm> share_places(std::vector<MeshForm> forms) {
+    std::vector<MeshForm> out;
+    for (MeshForm& form : forms) {
+        std::vector<bool> closed = std::move(form.closed_in);
+        const auto count = static_cast<std::size_t>(std::count(closed.begin(), closed.end(), true));
+        form.closed = count > 0 && count == closed.size();
+        if (count == 0 || form.closed) {
+            out.push_back(std::move(form));
+            continue;
+        }
+        MeshForm in_rooms = form;
+        in_rooms.closed = true;
+        in_rooms.serves = closed;
+        closed.flip();
+        form.serves = std::move(closed);
+        out.push_back(std::move(in_rooms));
+        out.push_back(std::move(form));
+    }
+    return out;
 }
 
 Box placed_box(const Box& box, const dmat4& world) {

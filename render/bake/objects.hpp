@@ -17,8 +17,9 @@ namespace surefoot::bake {
 struct MeshForm {
     LodChain chain;
     std::uint64_t triangles = 0;
-    Box box;              ///< in the mesh's frame
-    bool closed = false;  ///< sees no sky in any place that it serves
+    Box box;                        ///< in the mesh's frame
+    bool closed = false;            ///< sees no sky in any place that it serves; set by share_places()
+    std::vector<bool> closed_in{};  ///< by place of the mesh: whether it sees no sky there. Empty: it does in all
     /// By place of the mesh: whether this form stands there. Empty: in all. Where only some places are closed, two forms share
     /// them.
     std::vector<bool> serves;
@@ -72,10 +73,12 @@ CutLimits cut_limits(const MeshInScene& mesh);
 std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits);
 /// One form, or one a piece if the geometry exceeds the limits. Pieces meet in full detail, and in
 /// coarser levels as long as possible. `notes`: why stand-ins are left out, one line each. `sides`: what sees no sky anywhere is
-/// in pieces apart from the rest, if it is walls of a room. Forms are closed or not in each place.
+/// in pieces apart from the rest, if it is walls of a room; closed_in is by these.
 std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options,
                                  std::span<const ArtistStandIn> stand_ins = {}, std::vector<std::string>* notes = nullptr,
                                  const SkySides& sides = {});
+/// Of each form that sees no sky in some of its places alone, two: one serves those places, and one the others.
+std::vector<MeshForm> share_places(std::vector<MeshForm> forms);
 /// Every object with the forms that serve its place; of several, each is a piece. world boxes included.
 std::vector<PlacedObject> with_forms(const std::vector<PlacedObject>& objects, const std::vector<MeshForm>& forms,
                                      std::span<const std::uint32_t> first, std::span<const std::uint32_t> count);

@@ -73,12 +73,15 @@ void SkyRays::add_room(const dvec3& at, const dvec3& normal, SideSees& seen) con
         seen.room += std::min(opaque_.nearest_hit_m({fan.from, way, room_reach_m}), room_reach_m) / room_reach_m / rays_of_side;
 }
 
-std::optional<double> SkyRays::room_without_sky(const dvec3& at, const dvec3& normal) const {
-    const Fan fan = fan_of(at, normal);
-    for (const dvec3& way : fan.ways) {
+bool SkyRays::sees_sky(const Fan& fan) const {
+    return std::any_of(fan.ways.begin(), fan.ways.end(), [&](const dvec3& way) {
         const std::optional<dvec3> to_sky = fan.to_sky(way);
-        if (to_sky && !opaque_.is_blocked({fan.from, *to_sky, far_m_})) return {};
-    }
+        return to_sky && !opaque_.is_blocked({fan.from, *to_sky, far_m_});
+    });
+}
+
+std::optional<double> SkyRays::room_without_sky(const dvec3& at, const dvec3& normal) const {
+    if (sees_sky(fan_of(at, normal))) return {};
     SideSees seen;
     add_room(at, normal, seen);
     return seen.room;

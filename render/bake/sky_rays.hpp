@@ -31,6 +31,9 @@ public:
     /// The share of the room, if add_seen() would find no sky at all. Ends at the first ray that meets nothing.
     [[nodiscard]] std::optional<double> room_without_sky(const dvec3& at, const dvec3& normal) const;
 
+    /// Whether add_seen() would find any.
+    [[nodiscard]] bool sees_sky(const dvec3& at, const dvec3& normal) const { return sees_sky(fan_of(at, normal)); }
+
     static std::uint8_t hidden_byte(double seen);
 
 private:
@@ -43,6 +46,7 @@ private:
         /// Where the sky is looked for along a way; none: nowhere.
         [[nodiscard]] std::optional<dvec3> to_sky(const dvec3& way) const;
     };
+    [[nodiscard]] bool sees_sky(const Fan& fan) const;
     [[nodiscard]] Fan fan_of(const dvec3& at, const dvec3& normal) const;
 
     const RayTree& opaque_;

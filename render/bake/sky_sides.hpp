@@ -40,6 +40,13 @@ struct MeshInPlaces {
 /// there is of no use. The same at any number of threads.
 std::vector<SkySides> find_sky_sides(std::span<const MeshInPlaces> meshes, const std::vector<model::Material>& materials,
                                      const RayTree& opaque, const ForAll& for_all, const std::function<bool()>& step);
+/// By mesh, and in it by place: whether no vertex sees sky, by the rays of find_sky_sides() from the mesh's own triangles alone.
+/// far_m: beyond all of the scene. What is not lit counts as open. `step` as there; then what is there is of no use. Empty: all
+/// are too much.
+std::vector<std::vector<bool>> find_closed(std::span<const MeshInPlaces> meshes, const std::vector<model::Material>& materials,
+                                           const RayTree& opaque, double far_m, const ForAll& for_all,
+                                           const std::function<bool()>& step);
+/// How often either calls `step`.
 std::size_t sky_steps(std::span<const MeshInPlaces> meshes);
 
 }  // namespace surefoot::bake

@@ -12,7 +12,8 @@ namespace surefoot::model {
 constexpr EffectMask effects_under_sky = effect_sun | effect_shadow | effect_moving_shadow;
 
 /// By Vertex::hidden of both sides, and by the rule of the programs. A vertex of two-sided material shows its front where its
-/// normal is turned to the eye, else its back. Constant once made; any thread may read it.
+/// normal is turned to the eye, else its back. A triangle of one-sided material shows an eye behind it nothing. Constant once
+/// made; any thread may read it.
 class RoomSides {
 public:
     RoomSides() = default;
@@ -37,6 +38,9 @@ private:
         std::uint32_t first = 0, count = never;
     };
     bool add(const Model& model, const Part& part);
+    bool add_sides(const Model& model, const Part& part);
+    bool add_fronts(const Model& model, const Part& part);
+    bool add_half_space(std::size_t first, const vec3& normal, float above);
 
     std::vector<Run> runs_;  ///< by part; empty: no part has any
     std::vector<HalfSpace> half_spaces_;

@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <glm/gtc/matrix_transform.hpp>
 #include <string>
 #include <vector>
 
 #include "render/bake/bake.hpp"
 #include "render/bake/cluster.hpp"
+#include "render/bake/objects.hpp"
 #include "render/model/effects_below.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
@@ -128,6 +131,92 @@ TEST(SkySides, AreTheSameAtAnyNumberOfWorkers) {
         files.push_back(*read_text(file));
     }
     EXPECT_TRUE(files[0] == files[1]) << "the same bytes";
+}
+
+/// A floor over a closed cellar, and one wall below its eastern edge. They share vertices there, so the edge is in the open.
+importer::Primitive floor_with_a_wall() {
+    constexpr std::uint32_t across = 4, along = 14, down = 4;
+    importer::Primitive p;
+    const auto add = [&](const vec3& at, const vec3& normal) {
+        p.positions.push_back(at);
+        p.normals.push_back(glm::normalize(normal));
+    };
+    for (std::uint32_t i = 0; i <= along + down; ++i)
+        for (std::uint32_t j = 0; j <= across; ++j) {
+            const float z = -1.8F + 0.9F * static_cast<float>(j);
+            if (i < along)
+                add(vec3(-6 + 12.0F / along * static_cast<float>(i), 0.2F, z), vec3(0, 1, 0));
+            else
+                add(vec3(6, 0.2F - 0.8F * static_cast<float>(i - along), z), i == along ? vec3(1, 1, 0) : vec3(1, 0, 0));
+        }
+    for (std::uint32_t i = 0; i < along + down; ++i)
+        for (std::uint32_t j = 0; j < across; ++j) {
+            const std::uint32_t a = i * (across + 1) + j, b = a + 1, c = a + across + 1, d = c + 1;
+            p.indices.insert(p.indices.end(), {a, b, c, b, d, c});
+        }
+    lit::add_faces(p, vec3(-5, -3, -1.5F), vec3(5, 0, 1.5F), true);
+    p.uvs.resize(p.positions.size());
+    return p;
+}
+
+TEST(SkySides, APieceIsClosedByItsOwnTrianglesInEachPlace) {
+    importer::Scene scene;
+    const importer::Index mesh = lit::put(scene, floor_with_a_wall(), "floor", dvec3(0));
+    bake::place(scene, mesh, dvec3(0, 0, 40));  // in the open
+    importer::Primitive hall;                   // over the first
+    lit::add_faces(hall, vec3(-6.1F, 0.1F, -1.9F), vec3(6, 3, 1.9F), true);
+    lit::put(scene, std::move(hall), "hall", dvec3(0));
+    const model::Model m = baked_house(scene);
+    std::array<std::uint64_t, 2> floors{};
+    for (const auto& [n, effects] : leaves_named(m, "floor")) {
+        const Box& box = m.nodes[n].box;
+        if (box.max.y - box.min.y > 0.05 || box.min.y < 0.1) continue;
+        const bool open = box.min.z > 20;
+        EXPECT_EQ(has_sun(effects), open) << n << ": " << box.min.x << " to " << box.max.x;
+        floors[open ? 1 : 0] += m.nodes[n].triangles;
+    }
+    EXPECT_GE(floors[0], 2U * 14 * 4) << "up to its edge";
+    EXPECT_EQ(floors[1], floors[0]);
+}
+
+/// By place: whether the scene's first mesh sees no sky there. All of the scene is opaque.
+std::vector<bool> closed_in(const importer::Scene& scene, bool two_sided, const std::vector<dmat4>& places) {
+    model::Model model;
+    model.materials.resize(1);
+    model.materials[0].effects = model::effect_sun;
+    model.materials[0].two_sided = two_sided;
+    const bake::Geometry geometry = bake::mesh_geometry(scene.meshes[0], model);
+    const auto rays = bake::make_light_rays(scene, {});
+    const std::vector<bake::MeshInPlaces> meshes = {{&geometry, places}};
+    return bake::find_closed(meshes, model.materials, rays->opaque, 1000, lit::one_by_one, [] { return true; })[0];
+}
+
+TEST(SkySides, AWallBetweenSillsIsInTheOpenThoughItsCornersLieInThem) {
+    const auto wall_with = [](bool covered) {
+        importer::Scene scene;
+        lit::put(scene, lit::sheet(vec3(0), vec3(2, 0, 0), vec3(0, 1.25F, 0), 1), "wall", dvec3(0));
+        importer::Primitive sills;
+        for (const float y : {-1.25F, 1.25F})
+            lit::add_faces(sills, vec3(-2.1F, y - 0.12F, -0.05F), vec3(2.1F, y + 0.12F, 0.15F), false);
+        if (covered) lit::add_faces(sills, vec3(-2.2F, -1.4F, -0.1F), vec3(2.2F, 1.4F, 0.2F), false);
+        lit::put(scene, std::move(sills), "sills", dvec3(0));
+        return closed_in(scene, false, {dmat4(1)});
+    };
+    EXPECT_FALSE(wall_with(false)[0]) << "between its corners it sees sky";
+    EXPECT_TRUE(wall_with(true)[0]) << "in a casing it sees none";
+}
+
+TEST(SkySides, WhatLiesCloseOnAFloorIsClosedInARoom) {
+    importer::Scene scene;
+    lit::put(scene, lit::sheet(vec3(0), vec3(0, 0, 1), vec3(1, 0, 0), 1), "plate", dvec3(0, 0.1, 0));
+    importer::Primitive room;
+    lit::add_faces(room, vec3(-3, 0, -3), vec3(3, 3, 3), true);
+    lit::put(scene, std::move(room), "room", dvec3(0));
+    const auto at = [](const dvec3& place) { return glm::translate(dmat4(1), place); };
+    const std::vector<bool> closed = closed_in(scene, true, {at({0, 0.1, 0}), at({20, 0.1, 0}), at({0, 3.1, 0})});
+    EXPECT_TRUE(closed[0]) << "of its underside no point sees more than a gap";
+    EXPECT_FALSE(closed[1]);
+    EXPECT_FALSE(closed[2]) << "on the roof its upper side sees sky";
 }
 
 TEST(Clusters, OfTwoKindsAreApartBelowTheRoot) {

@@ -109,6 +109,25 @@ TEST(RoomSides, OneSidedPartsShowTheirFront) {
     EXPECT_FALSE(sides.any(1));
 }
 
+TEST(RoomSides, WhatOneSidedPartsTurnAwayFromTheEyeNeedsNoSun) {
+    // The bottom of a cabinet sees the sky below a building, its back the room.
+    const RoomSides cabinet = Squares(false)
+                                  .part()
+                                  .square(vec3(0, -1, 0), vec3(0), false, true)
+                                  .square(vec3(1, 0, 0), vec3(1, 1, 0), true, true)
+                                  .sides();
+    ASSERT_TRUE(cabinet.any(0));
+    EXPECT_FALSE(cabinet.all(0));
+    EXPECT_TRUE(cabinet.shows_no_sky(0, vec3(3, 0.1F, 0))) << "from above its plane";
+    EXPECT_FALSE(cabinet.shows_no_sky(0, vec3(3, 0, 0))) << "in its plane, rounding says whether it is drawn";
+    EXPECT_FALSE(cabinet.shows_no_sky(0, vec3(3, -0.1F, 0)));
+    Squares turned(false);
+    turned.part().square(vec3(0, -1, 0), vec3(0), false, true).square(vec3(1, 0, 0), vec3(0), true, true);
+    for (std::size_t v = 0; v < 4; ++v) turned.model.vertices[v].normal[1] = 127;
+    EXPECT_TRUE(turned.sides().shows_no_sky(0, vec3(3, 0.1F, 0))) << "triangles tell what is drawn, not normals";
+    EXPECT_FALSE(turned.sides().shows_no_sky(0, vec3(3, -0.1F, 0)));
+}
+
 TEST(RoomSides, RoundThingsAndOtherLightKeepTheSun) {
     Squares round;
     round.part();
