@@ -53,6 +53,29 @@ TEST(EffectUse, ObjectsOfOneNameHoldAnEffectTogether) {
     EXPECT_TRUE(holders_of(scene.model, vertex_colour).empty()) << "coarse forms are no place";
 }
 
+TEST(EffectUse, DrawnItemsAreNamedWithTheirPlaceAndWhatOfThemSeesSky) {
+    EffectScene scene;
+    for (model::Vertex& v : scene.model.vertices) v.hidden[0] = 255;
+    scene.vertex_of(EffectScene::textured).hidden[0] = 254;  // of both lamps the first
+    scene.model.nodes[2].box = {dvec3(4, 0, 2), dvec3(6, 2, 4)};
+    const auto of_reps = triangles_of_reps(scene.model);
+    FramesInUse frames;
+    frames.add(scene.model, of_reps, std::array{EffectScene::lamp_b, EffectScene::wall});
+    frames.add(scene.model, of_reps, std::array{EffectScene::lamp_a, EffectScene::lamp_b});
+    const std::vector<DrawnHolder> lamps = drawn_holders(scene.model, frames, texture);
+    ASSERT_EQ(lamps.size(), 1U);
+    EXPECT_EQ(lamps[0].name, "lamp");
+    EXPECT_EQ(lamps[0].items, 3U);
+    EXPECT_EQ(lamps[0].node, 2U) << "drawn in both frames";
+    EXPECT_EQ(lamps[0].middle_m, dvec3(5, 1, 3));
+    EXPECT_EQ(lamps[0].vertices, 3U) << "without those of its bare triangles";
+    EXPECT_EQ(lamps[0].see_sky, 0U) << "of the other lamp one does";
+    EXPECT_TRUE(drawn_holders(scene.model, frames, vertex_colour).empty());
+    scene.model.materials[EffectScene::lit].two_sided = true;
+    EXPECT_EQ(drawn_holders(scene.model, frames, sun).at(0).see_sky, drawn_holders(scene.model, frames, sun).at(0).vertices)
+        << "its back sees all of it";
+}
+
 TEST(EffectUse, OfAPathThatLooksAwayHalfTheTimeIsHalf) {
     auto model = model::read_walk(test::Forest::get().model_file);
     ASSERT_TRUE(model.ok());

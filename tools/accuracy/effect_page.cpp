@@ -225,6 +225,18 @@ EffectJson json_of(const std::vector<EffectRegion>& regions) {
     return out;
 }
 
+EffectJson json_of(const std::vector<DrawnHolder>& drawn) {
+    EffectJson out = EffectJson::array();
+    for (const DrawnHolder& d : drawn)
+        out.push_back({{"name", d.name},
+                       {"items", d.items},
+                       {"node", d.node},
+                       {"middle_m", {d.middle_m.x, d.middle_m.y, d.middle_m.z}},
+                       {"vertices", d.vertices},
+                       {"vertices_that_see_sky", d.see_sky}});
+    return out;
+}
+
 EffectJson json_of(const std::vector<Holder>& where) {
     EffectJson out = EffectJson::array();
     for (const Holder& h : where) out.push_back({{"name", h.name}, {"objects", h.objects}, {"triangles_share", h.share}});
@@ -250,6 +262,7 @@ std::string effects_json(const EffectReport& r) {
                            {"walked_frames", e.walked_frames},
                            {"walked_items", e.walked_items},
                            {"along_path", e.along_path},
+                           {"along_path_items", json_of(e.drawn)},
                            {"where", json_of(e.where)},
                            {"worth", e.shown_at > 0 ? json_of(e.worth) : EffectJson(nullptr)}});
     const EffectJson json = {{"model", r.model},           {"path", r.path},

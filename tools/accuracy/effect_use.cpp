@@ -70,6 +70,7 @@ void FramesInUse::add(const model::Model& m, std::span<const TrianglesByEffect> 
             if (of_reps[rep][e] == 0) continue;
             triangles_with[e] += of_reps[rep][e];
             ++items_with[e];
+            ++frames_of_rep[e][rep];
             if (largest == model::none || of_reps[rep][e] > of_reps[largest][e]) largest = rep;
         }
         if (largest == model::none) continue;
@@ -111,6 +112,56 @@ std::vector<Holder> holders_of(const model::Model& m, std::size_t effect) {
     }
     std::stable_sort(out.begin(), out.end(), [](const Holder& a, const Holder& b) { return a.share > b.share; });
     out.resize(std::min(out.size(), max_holders));
+    return out;
+}
+
+namespace {
+
+/// Counts vertices of the parts with the effect, and those that see sky.
+void count_vertices(const model::Model& m, model::Index rep, std::size_t effect, DrawnHolder& out) {
+    std::vector<std::uint32_t> used;
+    for (model::Index p = m.reps[rep].first_part; p < m.reps[rep].first_part + m.reps[rep].part_count; ++p) {
+        const model::Part& part = m.parts[p];
+        const model::Material& material = m.materials[part.material];
+        if ((material.effects >> effect & 1U) == 0) continue;
+        const auto first = m.indices.begin() + part.first_index;
+        used.assign(first, first + part.index_count);
+        std::sort(used.begin(), used.end());
+        used.erase(std::unique(used.begin(), used.end()), used.end());
+        out.vertices += static_cast<std::uint32_t>(used.size());
+        out.see_sky += static_cast<std::uint32_t>(std::count_if(used.begin(), used.end(), [&](std::uint32_t v) {
+            const auto& hidden = m.vertices[part.first_vertex + v].hidden;
+            return hidden[0] != 255 || (material.two_sided && hidden[1] != 255);
+        }));
+    }
+}
+
+}  // namespace
+
+std::vector<DrawnHolder> drawn_holders(const model::Model& m, const FramesInUse& frames, std::size_t effect) {
+    std::vector<model::Index> nodes(m.reps.size(), model::none);
+    for (model::Index n = 0; n < m.nodes.size(); ++n)
+        for (model::Index r = m.nodes[n].first_rep; r < m.nodes[n].first_rep + m.nodes[n].rep_count; ++r) nodes[r] = n;
+    struct Often {
+        std::uint32_t frames = 0;
+        model::Index rep = model::none;
+    };
+    std::map<std::string, std::pair<std::uint64_t, Often>> by_name;
+    for (const auto& [rep, count] : frames.frames_of_rep[effect]) {
+        auto& [items, often] = by_name[nodes[rep] == model::none ? "" : m.name_of(m.nodes[nodes[rep]])];
+        items += count;
+        if (count > often.frames) often = {count, rep};
+    }
+    std::vector<DrawnHolder> out;
+    for (const auto& [name, drawn] : by_name) {
+        DrawnHolder& holder = out.emplace_back();
+        holder.name = name;
+        holder.items = drawn.first;
+        holder.node = nodes[drawn.second.rep];
+        if (holder.node != model::none) holder.middle_m = m.nodes[holder.node].box.centre();
+        count_vertices(m, drawn.second.rep, effect, holder);
+    }
+    std::stable_sort(out.begin(), out.end(), [](const DrawnHolder& a, const DrawnHolder& b) { return a.items > b.items; });
     return out;
 }
 

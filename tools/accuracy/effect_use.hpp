@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ struct FramesInUse {
     std::array<std::uint64_t, model::effect_count> items_with{};   ///< of all frames
     std::array<std::uint32_t, model::effect_count> first_frame{};  ///< with such an item, if there is one
     std::array<model::Index, model::effect_count> first_rep{};     ///< of these items, the one with most triangles
+    /// By representation: the frames in which it is drawn with the effect.
+    std::array<std::map<model::Index, std::uint32_t>, model::effect_count> frames_of_rep;
 
     /// Adds a frame that draws these representations. of_reps: triangles_of_reps() of the model.
     void add(const model::Model& model, std::span<const TrianglesByEffect> of_reps, std::span<const model::Index> reps);
@@ -39,6 +42,19 @@ struct Holder {
     std::uint32_t objects = 0;  ///< of that name, with the effect
     double share = 0;           ///< 0..1, of the effect's triangles in full detail
 };
+
+/// All items of one name that frames draw with an effect. Which place: of the node that is drawn most often.
+struct DrawnHolder {
+    std::string name;            ///< of a node; may be empty
+    std::uint64_t items = 0;     ///< in all frames together
+    model::Index node = 0;       ///< the one drawn most often
+    dvec3 middle_m{0.0};         ///< of its box
+    std::uint32_t vertices = 0;  ///< of its form's triangles with the effect
+    std::uint32_t see_sky = 0;   ///< how many of them see any sky on a side that shows
+};
+
+/// Those with most items first.
+std::vector<DrawnHolder> drawn_holders(const model::Model& model, const FramesInUse& frames, std::size_t effect);
 
 /// At most max_holders names of objects, those with most triangles first.
 std::vector<Holder> holders_of(const model::Model& model, std::size_t effect);

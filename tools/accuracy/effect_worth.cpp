@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "render/effects/effects.hpp"
+#include "render/model/room_sides.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/statistics.hpp"
 #include "rt/clock/clock.hpp"
@@ -114,6 +115,19 @@ std::string along_path(const model::Model& m, const UseOfEffects& use, std::size
         walked.frames - walked.frames_with[bit], walked.frames, walked.first_frame[bit], node, name, with, m.reps[rep].triangles);
 }
 
+/// Which items those are, where they stand, and whether they see sky where it matters.
+std::string most_items(const std::vector<DrawnHolder>& drawn, model::EffectMask bit) {
+    std::string out;
+    for (std::size_t i = 0; i < std::min(drawn.size(), max_holders); ++i) {
+        const DrawnHolder& d = drawn[i];
+        out += fmt::format("{}{} ({} items; node {} near {:.1f} {:.1f} {:.1f}", i == 0 ? " Most are of " : ", ",
+                           d.name.empty() ? "no name" : d.name, d.items, d.node, d.middle_m.x, d.middle_m.y, d.middle_m.z);
+        if ((bit & model::effects_under_sky) != 0) out += fmt::format(", {} of {} vertices see sky", d.see_sky, d.vertices);
+        out += ")";
+    }
+    return out.empty() ? out : out + ".";
+}
+
 /// What the bake found, and what the path has of it.
 EffectWorth found_effect(const effects::EffectModule& module, std::size_t bit, const model::Model& model,
                          const UseOfEffects& use) {
@@ -134,7 +148,8 @@ EffectWorth found_effect(const effects::EffectModule& module, std::size_t bit, c
     effect.where = holders_of(model, bit);
     effect.walked_frames = use.walked.frames_with[bit];
     effect.walked_items = use.walked.items_with[bit];
-    effect.along_path = along_path(model, use, bit, effect.called_for);
+    effect.drawn = drawn_holders(model, use.walked, bit);
+    effect.along_path = along_path(model, use, bit, effect.called_for) + most_items(effect.drawn, module.bit);
     effect.behind = effect.called_for && (module.bit & model::background_effects) != 0;
     if (effect.behind) {
         effect.frames_share = effect.walked_frames_share = 1;

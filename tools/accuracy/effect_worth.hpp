@@ -34,7 +34,8 @@ struct EffectWorth {
     std::vector<Holder> where;                                   ///< of its triangles in full detail; empty: there are none
     std::uint32_t walked_frames = 0;                             ///< with the effect, of EffectReport::use_frames
     std::uint64_t walked_items = 0;                              ///< with it, in all of them
-    std::string along_path;                                      ///< why items of the walk have it, or why none has: a sentence
+    std::string along_path;                                      ///< why items of the walk have it, or why none has: sentences
+    std::vector<DrawnHolder> drawn;                              ///< the walk's items with it, by name: most items first
 };
 
 /// All that the page shows.
