@@ -116,7 +116,7 @@ std::string along_path(const model::Model& m, const UseOfEffects& use, std::size
 }
 
 /// Which items those are, where they stand, and whether they see sky where it matters.
-std::string most_items(const std::vector<DrawnHolder>& drawn, model::EffectMask bit) {
+std::string items_in_words(const std::vector<DrawnHolder>& drawn, model::EffectMask bit) {
     std::string out;
     for (std::size_t i = 0; i < std::min(drawn.size(), max_holders); ++i) {
         const DrawnHolder& d = drawn[i];
@@ -149,7 +149,7 @@ EffectWorth found_effect(const effects::EffectModule& module, std::size_t bit, c
     effect.walked_frames = use.walked.frames_with[bit];
     effect.walked_items = use.walked.items_with[bit];
     effect.drawn = drawn_holders(model, use.walked, bit);
-    effect.along_path = along_path(model, use, bit, effect.called_for) + most_items(effect.drawn, module.bit);
+    effect.along_path = along_path(model, use, bit, effect.called_for) + items_in_words(effect.drawn, module.bit);
     effect.behind = effect.called_for && (module.bit & model::background_effects) != 0;
     if (effect.behind) {
         effect.frames_share = effect.walked_frames_share = 1;
