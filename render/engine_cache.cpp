@@ -31,8 +31,9 @@ constexpr double min_promised_share = 1e-7;      // the same where an accuracy i
 constexpr double needed_share = 1.25;            // of what they save: so that they do not come and go
 constexpr std::uint32_t first_picture_item = 1;  // of ItemKind::refresh; the shadow map is below
 constexpr std::size_t uncovered_chunk = 32;
-constexpr std::uint32_t timed_every = 8;  // frames with pictures
-constexpr double min_timed_us = 100;      // by the table; less says nothing
+constexpr std::uint32_t timed_every = 8;                     // frames with pictures
+constexpr std::uint32_t untimed_long = 64, timed_first = 4;  // frames; so many are timed one after another, after so many without
+constexpr double min_timed_us = 100;                         // by the table; less says nothing
 constexpr double learnt_share = 0.5, min_picture_factor = 0.25, max_picture_factor = 8;
 constexpr double forgotten_share = 1.0 / 512;  // a frame on the real clock: what did not pay is tried again
 constexpr double min_sample = 0.05;            // of the prediction; in less nothing was drawn
@@ -198,6 +199,7 @@ void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const selec
     const double rate = std::max(1e-3 * static_cast<double>(a_ms), value_share * set.full_value / usual_budget_us);
     const bool promised = promised_rad > 0;
     const double buying = std::max(rate, (promised ? min_promised_share : min_rate_share) * set.full_value);
+    view.refills = jumped || (jumped_ns >= 0 && refills);
     view.ample = by_budget && !promised && has_time_for_all(set, room_us);
     view.picture_factor = picture_factor;
     view.us_per_value = by_budget && buying > 0 ? 1 / buying : 0.0;
@@ -220,6 +222,7 @@ void Engine::Impl::take_pictures() {
             if (cut.bought.has(i) && !pictures.take(offer)) cut.bought.cancel(i, list[i]);
         }
     }
+    if (pictures.is_idle()) return;
     const model::FrameCombine by = combine();
     pictures.begin_costs(prepared->covered);
     for (const select::CutItem& item : cut.items) {
@@ -425,14 +428,28 @@ std::vector<std::uint8_t> Engine::birds_eye(std::span<const cache::FrameBox> fra
     return cache::birds_eye_view(cache::seen_boxes(boxes, frame), bounds, eye, side_px);
 }
 
+/// Whether a frame that draws pictures times them. What was forgotten meanwhile is learnt again at once: pictures that do not pay
+/// are made in each frame until then.
+bool Engine::Impl::is_timed(double table_us) {
+    if (!(table_us > min_timed_us)) return false;
+    if (untimed_frames > untimed_long) timed_next = timed_first;
+    if (timed_next == 0 && ++picture_frames % timed_every != 0) return false;
+    timed_next -= timed_next > 0 ? 1 : 0;
+    untimed_frames = 0;
+    return true;
+}
+
 /// A frame's time is corrected as a whole, mostly by what forms take. So from time to time pictures are timed by themselves: all
 /// before them is waited for, and then they are.
 void Engine::Impl::draw_pictures(const SubmitLimits& limits, SubmitReport& report) {
     const double table_us = report.pictures_us / picture_factor;
-    if (limits.now_ns != nullptr) picture_factor += forgotten_share * (1 - picture_factor);
+    if (limits.now_ns != nullptr) {
+        picture_factor += forgotten_share * (1 - picture_factor);
+        ++untimed_frames;
+    }
     if (shown_pictures.empty()) return;
     device->draws.plays();
-    const bool timed = limits.now_ns != nullptr && table_us > min_timed_us && ++picture_frames % timed_every == 0;
+    const bool timed = limits.now_ns != nullptr && is_timed(table_us);
     if (timed) {
         device->end_slice();  // there may be none, and what clears the picture is before it
         device->wait_slices(0);

@@ -112,9 +112,11 @@ struct Engine::Impl {
     double last_picture_sample GUARDED_BY(draws) = 1;    ///< of picture_factor
     double picture_factor GUARDED_BY(draws) = 1;         ///< time to draw pictures, over the table's and the frame's correction
     std::uint32_t picture_frames GUARDED_BY(draws) = 0;  ///< that drew enough of them to be timed
-    double pictures_value GUARDED_BY(draws) = 0;         ///< of what the drawn pictures show
-    double after_us GUARDED_BY(draws) = 0;               ///< of coarse forms after the last slice, in place of pictures
-    double shown_us GUARDED_BY(draws) = 0;               ///< of the drawn pictures, after all forms
+    /// Since pictures were timed. And how many are still timed one after another, since that was long ago.
+    std::uint32_t untimed_frames GUARDED_BY(draws) = 64, timed_next GUARDED_BY(draws) = 0;
+    double pictures_value GUARDED_BY(draws) = 0;  ///< of what the drawn pictures show
+    double after_us GUARDED_BY(draws) = 0;        ///< of coarse forms after the last slice, in place of pictures
+    double shown_us GUARDED_BY(draws) = 0;        ///< of the drawn pictures, after all forms
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
@@ -216,6 +218,7 @@ struct Engine::Impl {
     void draw_uncovered(const SubmitLimits& limits, double start_us, model::ItemCost& so_far, SubmitReport& report)
         REQUIRES(draws);
     void draw_pictures(const SubmitLimits& limits, SubmitReport& report) REQUIRES(draws);
+    [[nodiscard]] bool is_timed(double table_us) REQUIRES(draws);
     [[nodiscard]] std::span<const gl::DrawItem> contents_of(cache::Index box) const REQUIRES(draws) {
         return std::span(picture_items).subspan(pictures.boxes().first_node(box), pictures.boxes().nodes(box).size());
     }

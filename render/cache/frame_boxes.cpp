@@ -3,16 +3,19 @@
 
 #include <algorithm>
 
+#include "render/cache/in_view.hpp"
 #include "render/cache/scene_boxes.hpp"
-#include "render/model/view.hpp"
 
 namespace surefoot::cache {
 
 namespace {
 
-/// Leaves in view below a box, up to what is shown. Their number.
-std::uint32_t mark_triangles(const SceneBoxes& boxes, Index i, const model::Frustum& frustum, std::span<FrameBox> frame) {
-    if (frame[i].shown || !boxes.has_contents(i) || !model::visible(frustum, boxes.filled(i))) return 0;
+/// Leaves in view below a box, up to what is shown. Their number. among: planes that the box above it lies across.
+std::uint32_t mark_triangles(const SceneBoxes& boxes, Index i, const model::Frustum& frustum, unsigned among,
+                             std::span<FrameBox> frame) {
+    if (frame[i].shown || !boxes.has_contents(i)) return 0;
+    const unsigned across = planes_across(frustum, boxes.filled(i), among);
+    if (across == out_of_view) return 0;
     const CacheBox& box = boxes.tree().boxes[i];
     if (box.child_count == 0) {
         frame[i].as_triangles = true;
@@ -20,7 +23,7 @@ std::uint32_t mark_triangles(const SceneBoxes& boxes, Index i, const model::Frus
     }
     std::uint32_t count = 0;
     for (Index child = box.first_child; child < box.first_child + box.child_count; ++child)
-        count += mark_triangles(boxes, child, frustum, frame);
+        count += mark_triangles(boxes, child, frustum, across, frame);
     return count;
 }
 
@@ -36,7 +39,7 @@ FrameBoxCounts mark_boxes(const SceneBoxes& boxes, std::span<const Index> shown,
         frame[box].shown = true;
         counts.reused += frame[box].made ? 0 : 1;
     }
-    counts.as_triangles = mark_triangles(boxes, 0, frustum, frame);
+    counts.as_triangles = mark_triangles(boxes, 0, frustum, all_planes, frame);
     return counts;
 }
 

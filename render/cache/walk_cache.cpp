@@ -6,18 +6,22 @@
 #include <limits>
 #include <utility>
 
+#include "render/cache/in_view.hpp"
+
 namespace surefoot::cache {
 
 namespace {
 
-constexpr float min_saving_us = 5;          // less is not worth a picture
-constexpr double same_change_frames = 2;    // what is forgotten again so soon was forgotten for one reason
-constexpr double sooner_share = 0.25;       // of the usual time between two of them: nothing is expected sooner
-constexpr double min_life_frames = 4;       // for less, nothing is offered
-constexpr std::uint64_t tight_frames = 16;  // after room was missing, only what finds room is offered
-constexpr double rounded_down = 1 - 1e-6;   // errors are reported in float
-constexpr float new_share = 0.5F;           // of a cost that was measured anew
-constexpr double doubt = 0.15;              // of what a picture saves, where pictures take twice as long as the table says
+constexpr float min_saving_us = 5;           // less is not worth a picture
+constexpr double same_change_frames = 2;     // what is forgotten again so soon was forgotten for one reason
+constexpr double sooner_share = 0.25;        // of the usual time between two of them: nothing is expected sooner
+constexpr double min_life_frames = 4;        // for less, nothing is offered
+constexpr std::uint64_t tight_frames = 16;   // after room was missing, only what finds room is offered
+constexpr double rounded_down = 1 - 1e-6;    // errors are reported in float
+constexpr float new_share = 0.5F;            // of a cost that was measured anew
+constexpr double doubt = 0.15;               // of what a picture saves, where pictures take twice as long as the table says
+constexpr double new_margin = 0.3;           // of what a new one takes, there: so much more must it save
+constexpr std::uint32_t idle_prospects = 4;  // times as many, in a plan of an idle cache
 constexpr float pays_band = 0.1F;  // of its price: so much less must a picture save before it is left out, and more to come back
 constexpr float share_alone = 0.5F;             // of what lies across several boxes, for each by itself
 constexpr float dearer = 1.1F;                  // than when a picture was last worked out: then it is worked out again at once
@@ -26,6 +30,9 @@ constexpr std::size_t max_tries = 64;           // candidates that are worked ou
 
 /// Where the table errs about pictures, it is not trusted to the last.
 float sure_share(double picture_factor) { return static_cast<float>(1 - doubt * std::clamp(picture_factor - 1, 0.0, 1.0)); }
+float needed_share(double picture_factor) {
+    return static_cast<float>(1 + new_margin * std::clamp(picture_factor - 1, 0.0, 1.0));
+}
 
 }  // namespace
 
@@ -53,6 +60,7 @@ WalkCache::WalkCache(SceneBoxes boxes, const WalkCacheOptions& options, std::vec
     serves_.resize(count, false);
     pays_.resize(count, true);
     in_view_.resize(count, false);
+    planes_across_.resize(count, 0);
     refused_.reserve(max_refused);
     out_until_.resize(count, 0);
     cell_worth_us_.resize(std::size_t{options.layers} * cells_a_side * cells_a_side);
@@ -262,8 +270,9 @@ double WalkCache::allowed_for_new_rad(Index box, const PlanView& view) const {
 
 /// A new picture of the box, where it pays. False: it does not.
 bool WalkCache::work_out(Index box, const PlanView& view, CacheOffer& offer) const {
-    const float saves_us = sure_share(view.picture_factor) * full_worth_us(box, view) - draw_us(box, view);
-    if (!(saves_us > min_saving_us)) return false;
+    const float price_us = draw_us(box, view), worth_us = sure_share(view.picture_factor) * full_worth_us(box, view);
+    const float saves_us = worth_us - price_us;
+    if (!(saves_us > min_saving_us && worth_us > needed_share(view.picture_factor) * price_us)) return false;
     const auto prospect = prospect_of(boxes_.filled(box), view.course, allowed_for_new_rad(box, view));
     if (!prospect || before_blended(prospect->box)) return false;
     offer.box = box;
@@ -289,11 +298,11 @@ bool WalkCache::pays_beside_held(CacheOffer& offer, const PlanView& view) const 
 /// A few boxes a frame, in turns; before them those in view that cost more than they did. With a surround, most of them in view:
 /// they are found first after a jump.
 void WalkCache::refresh_facts(const PlanView& view) {
-    const std::uint32_t quarter = options_.prospects / 4;
+    const std::uint32_t all = (quiet_plans_ < options_.quiet_plans ? 1 : idle_prospects) * options_.prospects, quarter = all / 4;
     std::uint32_t left = quarter;
     for (Index i = 0; i < boxes_.size() && left > 0; ++i)
         if (in_view_[i] && full_worth_us(i, view) > dearer * facts_[i].worth_us) left -= work_out_fact(i, view) ? 1 : 0;
-    left += options_.prospects - (options_.surround ? 2 : 1) * quarter;
+    left += all - (options_.surround ? 2 : 1) * quarter;
     work_out_facts(view, next_fact_, left, true);
     left += quarter;
     if (options_.surround) work_out_facts(view, next_beside_, left, false);
@@ -374,11 +383,23 @@ void WalkCache::offer_candidates(const PlanView& view) {
     }
 }
 
+void WalkCache::find_in_view() {
+    for (Index i = 0; i < in_view_.size(); ++i) {
+        const CacheBox& box = boxes_.tree().boxes[i];
+        const unsigned among = box.parent == none ? all_planes : planes_across_[box.parent];
+        planes_across_[i] = static_cast<std::uint8_t>(planes_across(seen_, boxes_.filled(i), among));
+        in_view_[i] = planes_across_[i] != out_of_view;
+    }
+}
+
 std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
     offers_.clear();
     candidates_.clear();
     no_room_for_ = 0;
     if (!any() || of.frustum == nullptr) return offers_;
+    is_idle_ = !of.refills && quiet_plans_ >= options_.quiet_plans && ++idle_calls_ < options_.idle_every;
+    if (is_idle_) return offers_;
+    idle_calls_ = 0;
     PlanView view = of;
     view.course.max_frames = std::min(view.course.max_frames, frames_to_forget());
     if (view.course.max_frames < min_life_frames) return offers_;
@@ -386,7 +407,7 @@ std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
     seen_ = *view.frustum;
     seen_from_ = view.course.eye;
     planned_ = true;
-    for (Index i = 0; i < in_view_.size(); ++i) in_view_[i] = model::visible(seen_, boxes_.filled(i));
+    find_in_view();
     refresh_facts(view);
     for (Index i = boxes_.size(); i-- > 0;) {
         const CacheBox& box = boxes_.tree().boxes[i];
@@ -395,6 +416,7 @@ std::span<const CacheOffer> WalkCache::plan(const PlanView& of) {
         for (Index child = box.first_child; child < box.first_child + box.child_count; ++child) below += best_us_[child];
         best_us_[i] = serves_[i] ? own_us_[i] : std::max(own_us_[i], below);
     }
+    quiet_plans_ = best_us_[0] > 0.0F ? 0 : std::min(quiet_plans_ + 1, options_.quiet_plans);
     choose(0);
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
         if (a.in_view != b.in_view) return a.in_view;
@@ -454,7 +476,7 @@ const CacheDraws& WalkCache::draws(const model::CoverBits& set, const ViewPixels
     draws_.boxes.clear();
     draws_.unserved.clear();
     draws_.value = draws_.saves_us = 0;
-    if (!any()) return draws_;
+    if (!any() || set.none()) return draws_;
     look_from(pixels.eye);
     for (Index i = boxes_.size(); i-- > 0;) {
         const CacheBox& box = boxes_.tree().boxes[i];

@@ -24,6 +24,8 @@ struct WalkCacheOptions {
     std::uint32_t prospects = 48;       ///< worked out in a frame, beside those of offers
     std::uint32_t kept_frames = 16;     ///< a picture that a set may rely on is not dropped
     double renewed_frames = 5;          ///< before a picture fails, a new one is offered
+    std::uint32_t quiet_plans = 30;     ///< one after another in which nothing pays: then the cache is idle
+    std::uint32_t idle_every = 8;       ///< frames from one plan of an idle cache to the next
     float picture_us = 1;               ///< to draw a picture, beside its pixels
     float picture_ns_per_pixel = 5.6F;  ///< of the box's faces
     float capture_us = 20;              ///< to make a picture, beside what it shows
@@ -60,6 +62,7 @@ struct PlanView {
     double picture_factor = 1;                ///< on what draw_us() predicts
     double us_per_value = 0;                  ///< what the frame would pay for a weighted pixel; 0: time is all that counts
     bool ample = false;                       ///< the frame shows all it can without pictures: none is worth anything
+    bool refills = false;                     ///< there was a jump a short time ago: an idle cache plans too
     model::FrameCombine combine;
 };
 
@@ -101,8 +104,11 @@ public:
     void add_cost(model::Index node, float us, float value, float full_value);
     void end_costs();
 
-    /// Pictures that pay before they fail or are forgotten, the best first. Valid until the next call.
+    /// Pictures that pay before they fail or are forgotten, the best first. Valid until the next call. Where nothing has paid for
+    /// quiet_plans, it looks in one of idle_every calls, and offers nothing in the others.
     std::span<const CacheOffer> plan(const PlanView& view);
+    /// The last plan() did not look. Nor does it need the costs of this cut.
+    [[nodiscard]] bool is_idle() const { return is_idle_; }
     [[nodiscard]] std::span<const CacheOffer> offers() const { return offers_; }  ///< of the last plan()
     /// The box gets the picture: drop what no set relies on, where there is no room. False: there is none. Until captured(), its
     /// slot holds the picture of before, or nothing. drop_pending() brings that one back.
@@ -165,6 +171,7 @@ private:
     [[nodiscard]] float loss() const { return promise_rad_ > 0 ? 0.0F : options_.loss; }
     [[nodiscard]] bool work_out(Index box, const PlanView& view, CacheOffer& offer) const;
     [[nodiscard]] bool pays_beside_held(CacheOffer& offer, const PlanView& view) const;
+    void find_in_view();
     void refresh_facts(const PlanView& view);
     bool work_out_fact(Index box, const PlanView& view);
     void work_out_facts(const PlanView& view, Index& next, std::uint32_t& left, bool in_view);
@@ -222,13 +229,17 @@ private:
     std::vector<Candidate> candidates_;
     std::vector<CacheOffer> offers_;
     std::vector<Pending> pending_;
-    std::vector<Index> victims_;     ///< of take(): what would go for room
-    Slots trial_;                    ///< of take()
-    std::uint32_t no_room_for_ = 0;  ///< texels of a side, since plan(); 0: nothing failed
-    std::vector<bool> serves_;       ///< by box: of the last plan()
-    std::vector<bool> in_view_;      ///< the same
-    std::vector<bool> pays_;         ///< by box: its picture saves more than it takes, by the last plan() that looked at it
-    std::vector<bool> relies_;       ///< by box: a set needs something below it
+    std::vector<Index> victims_;               ///< of take(): what would go for room
+    Slots trial_;                              ///< of take()
+    std::uint32_t no_room_for_ = 0;            ///< texels of a side, since plan(); 0: nothing failed
+    std::vector<bool> serves_;                 ///< by box: of the last plan()
+    std::vector<bool> in_view_;                ///< the same
+    std::vector<std::uint8_t> planes_across_;  ///< the same: of in_view.hpp
+    std::uint32_t quiet_plans_ = 0;            ///< one after another in which nothing paid
+    std::uint32_t idle_calls_ = 0;             ///< of plan(), since it looked
+    bool is_idle_ = false;
+    std::vector<bool> pays_;    ///< by box: its picture saves more than it takes, by the last plan() that looked at it
+    std::vector<bool> relies_;  ///< by box: a set needs something below it
     std::vector<Refused> refused_;
     std::uint64_t tight_until_ = 0;                  ///< the frame until which offers must find room
     std::array<std::uint64_t, 3> no_place_until_{};  ///< by size, the same: nothing was worth less than what was refused
