@@ -28,6 +28,7 @@ constexpr std::size_t max_tries = 64;           // candidates that are worked ou
 
 /// Where the table errs about pictures, it is not trusted to the last.
 float sure_share(double picture_factor) { return static_cast<float>(1 - doubt * std::clamp(picture_factor - 1, 0.0, 1.0)); }
+/// Nor is a new picture made that hardly saves more than it takes.
 float needed_share(double picture_factor) {
     return static_cast<float>(1 + new_margin * std::clamp(picture_factor - 1, 0.0, 1.0));
 }

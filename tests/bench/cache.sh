@@ -123,19 +123,21 @@ pays_sizes() {
   done
 }
 
-# The chart and its points go beside the page, unless SUREFOOT_PAYS_FRAMES shortens the run to see that it works; then they stay in WORK.
+# The chart and its points go beside the page, unless SUREFOOT_PAYS_FRAMES shortens the run to see that it works, or SUREFOOT_PAYS_PANELS
+# names a part of the panels; then they stay in WORK.
 pays_group() {
   local pays_frames=${SUREFOOT_PAYS_FRAMES:-30} pays_warm_up=72
+  local panel panels=${SUREFOOT_PAYS_PANELS:-speeds overdraw sizes}
   local pays_points=$work/pays.csv pays_path="" pays_at=0.05 pays_done=0 pays_all=46 to=$work
   [[ -z "${SUREFOOT_PAYS_FRAMES:-}" ]] || pays_warm_up=$pays_frames
   [[ ! -f "$work/hospital.walk" ]] || pays_all=52
   pays_scenes || return 0
   echo "# panel,line,x,ratio,least,greatest,cpu_ms,cpu_ms_without,pictures,made" >"$pays_points"
-  pays_speeds
-  pays_overdraw
-  pays_sizes
+  for panel in $panels; do
+    case $panel in speeds | overdraw | sizes) "pays_$panel" ;; *) wrong_use "SUREFOOT_PAYS_PANELS: there is no $panel" ;; esac
+  done
   LC_ALL=C awk -f "$bench/svg.awk" -f "$bench/pays.awk" -v to="$work/pays.svg" "$pays_points" >"$work/pays.md" || { failed=1; return 0; }
   cat "$work/pays.md" >&2
-  if [[ -z "${SUREFOOT_PAYS_FRAMES:-}" ]] && (( failed == 0 )); then to=$top/render/cache; cp "$work/pays.svg" "$pays_points" "$to"; fi
+  if [[ -z "${SUREFOOT_PAYS_FRAMES:-}${SUREFOOT_PAYS_PANELS:-}" ]] && (( failed == 0 )); then to=$top/render/cache; cp "$work/pays.svg" "$pays_points" "$to"; fi
   echo "tests/bench/run: the chart is $to/pays.svg, its points are in $to/pays.csv" >&2
 }
