@@ -136,7 +136,10 @@ void SceneBoxes::complete(model::CoverBits& bits) const {
     }
 }
 
+/// Most nodes are not covered, and of small ones the leaves of the tree that they meet are known.
 bool SceneBoxes::covered(model::Index node, const model::CoverBits& bits) const {
+    for (const Index leaf : boxes_of(node))
+        if (!bits[leaf]) return false;
     const Box& box = node_boxes_[node];
     return !tree_.boxes.empty() && !box.empty() && covers(tree_, 0, box, bits);
 }

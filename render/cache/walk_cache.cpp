@@ -145,13 +145,13 @@ void WalkCache::clear() {
 const model::CoverBits& WalkCache::cover(const ViewPixels& pixels, double radius_m) {
     ++frame_;
     make_room_by_worth();
-    look_from(pixels.eye);
     covered_.reset();
-    bool any_valid = false;
+    bool any_valid = false, looked = false;
     for (Index i = 0; i < held_.size(); ++i) {
         if (held_[i].until != 0 && frame_ > held_[i].until) drop(i);
         if (!held_[i].any() || held_[i].until != 0 || !pays_[i] || is_pending(i)) continue;
         if (!valid_around(held_[i].picture, pixels.eye, radius_m, allowed_rad(i, held_[i].box, pixels))) continue;
+        if (!std::exchange(looked, true)) look_from(pixels.eye);
         if (before_blended(held_[i].box)) continue;
         covered_.set(i);
         last_covered_[i] = frame_;
