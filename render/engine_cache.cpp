@@ -191,9 +191,9 @@ void Engine::Impl::offer_pictures(const prepare::PreparedFrame& set, const selec
     const double budget_us = std::isfinite(input.budget_us) ? input.budget_us : usual_budget_us;
     // Forms compete with them, and what they take is as wrong as what forms take.
     const bool refills = jumped || jumped_ns < 0 || frame_ns - jumped_ns < refill_ns;
-    const double limited_us = (refills ? limited_share : steady_share) * budget_us / std::max(1.0, correction.factor);
-    double left_us = by_budget ? limited_us : unlimited_share * budget_us;
-    view.max_price_us = std::min(max_share * budget_us / std::max(1.0, correction.factor), left_us);
+    const double corrected_us = by_budget ? budget_us / std::max(1.0, correction.factor) : budget_us;
+    double left_us = (!by_budget ? unlimited_share : refills ? limited_share : steady_share) * corrected_us;
+    view.max_price_us = std::min(max_share * corrected_us, left_us);
     const auto room_us = static_cast<float>(select::Budget(input).room_us());
     const float a_ms = by_budget ? set.curve.value_at(room_us + 1000.0F) - set.curve.value_at(room_us) : 0.0F;
     const double rate = std::max(1e-3 * static_cast<double>(a_ms), value_share * set.full_value / usual_budget_us);

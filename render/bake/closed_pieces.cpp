@@ -18,9 +18,11 @@ struct OpenPiece {
 bool find_closed_pieces(std::vector<std::vector<MeshForm>>& by_mesh, std::span<const PlacedObject> objects,
                         const model::Model& model, const LightRays& rays, const Progress& progress) {
     std::vector<std::vector<dmat4>> worlds(by_mesh.size());
+    std::vector<std::vector<bool>> moves(by_mesh.size());
     Box scene;
     for (const PlacedObject& object : objects) {
         worlds[object.mesh].push_back(object.world);
+        moves[object.mesh].push_back(object.motion != model::none);
         scene.grow(object.box);
     }
     std::vector<OpenPiece> pieces;
@@ -32,7 +34,7 @@ bool find_closed_pieces(std::vector<std::vector<MeshForm>>& by_mesh, std::span<c
             MeshInPlaces mesh{&form.chain.full, {}};
             form.closed_in.resize(worlds[m].size(), false);
             for (std::size_t p = 0; p < worlds[m].size(); ++p) {
-                if (form.closed_in[p]) continue;
+                if (form.closed_in[p] || moves[m][p]) continue;  // what moves may come out
                 piece.places.push_back(p);
                 mesh.places.push_back(worlds[m][p]);
             }

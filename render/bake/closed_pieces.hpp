@@ -10,8 +10,8 @@
 namespace surefoot::bake {
 
 /// Sets MeshForm::closed_in of pieces, where it is not set. Before a mesh is cut, a vertex on the border between what sees sky
-/// and what does not counts for both. by_mesh: all forms of each mesh. objects: their places, by mesh. On all cores of the
-/// calling arena. False: stopped.
+/// and what does not counts for both. Not where the mesh moves. by_mesh: all forms of each mesh. objects: their places, by mesh.
+/// On all cores of the calling arena. False: stopped.
 bool find_closed_pieces(std::vector<std::vector<MeshForm>>& by_mesh, std::span<const PlacedObject> objects,
                         const model::Model& model, const LightRays& rays, const Progress& progress);
 

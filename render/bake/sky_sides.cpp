@@ -156,7 +156,8 @@ void SideFinder::fill(Sided& sided, std::size_t place) const {
     }
 }
 
-/// Ends at the first vertex that sees sky. Corners within something tell nothing of what lies between them: points there do.
+/// Ends at the first vertex that sees sky. Light is measured at vertices, so what lies between two that see no sky is dark in any
+/// case. One within something takes its light from its neighbours: points between tell there.
 bool SideFinder::is_closed(std::size_t m, std::size_t place) {
     Sided& sided = sided_[m];
     if (sided.range.parts.empty()) return false;

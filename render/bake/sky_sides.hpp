@@ -41,8 +41,9 @@ struct MeshInPlaces {
 std::vector<SkySides> find_sky_sides(std::span<const MeshInPlaces> meshes, const std::vector<model::Material>& materials,
                                      const RayTree& opaque, const ForAll& for_all, const std::function<bool()>& step);
 /// By mesh, and in it by place: whether no vertex sees sky, by the rays of find_sky_sides() from the mesh's own triangles alone.
-/// far_m: beyond all of the scene. What is not lit counts as open. `step` as there; then what is there is of no use. Empty: all
-/// are too much.
+/// Where a corner is within something, points of the triangle are tried, every half metre; one of over 64 m counts as open.
+/// far_m: beyond all of the scene. What is not lit counts as open. `step` as there; then what is
+/// there is of no use. Empty: all are too much.
 std::vector<std::vector<bool>> find_closed(std::span<const MeshInPlaces> meshes, const std::vector<model::Material>& materials,
                                            const RayTree& opaque, double far_m, const ForAll& for_all,
                                            const std::function<bool()>& step);

@@ -273,7 +273,8 @@ bool WalkCache::pays_beside_held(CacheOffer& offer, const PlanView& view) const 
 /// A few boxes a frame, in turns; before them those in view that cost more than they did. With a surround, most of them in view:
 /// they are found first after a jump.
 void WalkCache::refresh_facts(const PlanView& view) {
-    const std::uint32_t all = (quiet_plans_ < options_.quiet_plans ? 1 : idle_prospects) * options_.prospects, quarter = all / 4;
+    const bool seldom = quiet_plans_ >= options_.quiet_plans && !view.refills;
+    const std::uint32_t all = (seldom ? idle_prospects : 1) * options_.prospects, quarter = all / 4;
     std::uint32_t left = quarter;
     for (Index i = 0; i < boxes_.size() && left > 0; ++i)
         if (in_view_[i] && full_worth_us(i, view) > dearer * facts_[i].worth_us) left -= work_out_fact(i, view) ? 1 : 0;

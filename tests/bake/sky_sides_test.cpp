@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/bake/bake.hpp"
+#include "render/bake/closed_pieces.hpp"
 #include "render/bake/cluster.hpp"
 #include "render/bake/objects.hpp"
 #include "render/model/effects_below.hpp"
@@ -159,14 +160,19 @@ importer::Primitive floor_with_a_wall() {
     return p;
 }
 
-TEST(SkySides, APieceIsClosedByItsOwnTrianglesInEachPlace) {
+/// The floor in a hall over it, and once more in the open.
+importer::Scene floor_in_a_hall() {
     importer::Scene scene;
     const importer::Index mesh = lit::put(scene, floor_with_a_wall(), "floor", dvec3(0));
-    bake::place(scene, mesh, dvec3(0, 0, 40));  // in the open
-    importer::Primitive hall;                   // over the first
+    bake::place(scene, mesh, dvec3(0, 0, 40));
+    importer::Primitive hall;
     lit::add_faces(hall, vec3(-6.1F, 0.1F, -1.9F), vec3(6, 3, 1.9F), true);
     lit::put(scene, std::move(hall), "hall", dvec3(0));
-    const model::Model m = baked_house(scene);
+    return scene;
+}
+
+TEST(SkySides, APieceIsClosedByItsOwnTrianglesInEachPlace) {
+    const model::Model m = baked_house(floor_in_a_hall());
     std::array<std::uint64_t, 2> floors{};
     for (const auto& [n, effects] : leaves_named(m, "floor")) {
         const Box& box = m.nodes[n].box;
@@ -204,6 +210,28 @@ TEST(SkySides, AWallBetweenSillsIsInTheOpenThoughItsCornersLieInThem) {
     };
     EXPECT_FALSE(wall_with(false)[0]) << "between its corners it sees sky";
     EXPECT_TRUE(wall_with(true)[0]) << "in a casing it sees none";
+}
+
+TEST(SkySides, APieceOfWhatMovesIsNotClosedByItself) {
+    importer::Scene scene;
+    lit::put(scene, lit::sheet(vec3(0), vec3(1, 0, 0), vec3(0, 0, -1), 1), "plate", dvec3(0, 1, 0));
+    importer::Primitive room;
+    lit::add_faces(room, vec3(-3, 0, -3), vec3(3, 3, 3), true);
+    lit::put(scene, std::move(room), "room", dvec3(0));
+    model::Model model;
+    model.materials.resize(1);
+    model.materials[0].effects = model::effect_sun;
+    std::vector<std::vector<bake::MeshForm>> by_mesh(1);
+    by_mesh[0].resize(2);
+    for (bake::MeshForm& piece : by_mesh[0]) piece.chain.full = bake::mesh_geometry(scene.meshes[0], model);
+    std::vector<bake::PlacedObject> objects(2);
+    for (bake::PlacedObject& object : objects) object.world = glm::translate(dmat4(1), dvec3(0, 1, 0));
+    for (bake::PlacedObject& object : objects) object.box = {dvec3(-3, 0, -3), dvec3(3, 3, 3)};
+    objects[1].motion = 0;
+    const auto rays = bake::make_light_rays(scene, {});
+    ASSERT_TRUE(bake::find_closed_pieces(by_mesh, objects, model, *rays, {}));
+    for (const bake::MeshForm& piece : by_mesh[0])
+        EXPECT_EQ(piece.closed_in, (std::vector<bool>{true, false})) << "it may come out";
 }
 
 TEST(SkySides, WhatLiesCloseOnAFloorIsClosedInARoom) {

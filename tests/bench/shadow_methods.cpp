@@ -98,8 +98,7 @@ struct SunMap {
     std::uint64_t triangles = 0;
 };
 
-/// As the product plans its own map, but for what it holds. That takes the coarsest such form, which may be full detail without
-/// what its masks hide: more triangles.
+/// As the product plans its own map, but for what it holds.
 class MapPlan {
 public:
     MapPlan(const model::Model& m, const Pose& eye, const vec3& towards, double radius_m) : m_(m), half_m_(radius_m) {

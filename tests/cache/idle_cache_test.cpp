@@ -57,10 +57,12 @@ protected:
             ++made;
         }
         looked_ += cache_.is_idle() ? 0 : 1;
-        cache_.begin_costs(set);
-        for (model::Index n = 1; n < 9; ++n)
-            if (!cache_.boxes().covered(n, set)) cache_.add_cost(n, cost_us, 1, 1);
-        cache_.end_costs();
+        if (!cache_.is_idle()) {  // as the engine does
+            cache_.begin_costs(set);
+            for (model::Index n = 1; n < 9; ++n)
+                if (!cache_.boxes().covered(n, set)) cache_.add_cost(n, cost_us, 1, 1);
+            cache_.end_costs();
+        }
         eye_ += step_m_;
         return made;
     }

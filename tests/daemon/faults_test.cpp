@@ -55,8 +55,9 @@ TEST(Faults, TheWatchdogStarvesWhileTheFrameThreadAloneIsFrozen) {
     EXPECT_EQ(daemon.lines_with("missed") - missed_before, 1) << "one line for the whole burst: " << daemon.log_text();
     ::kill(daemon.pid, SIGTERM);
     EXPECT_EQ(daemon.wait_exit(20), exit_success);
-    // A frame that this machine delays after the burst has a line of its own; it is not late by a second.
-    EXPECT_EQ(lines_late_by(daemon.log_text(), 1000), 1) << "one line for the whole burst: " << daemon.log_text();
+    // A frame that this machine delays after the burst has a line of its own. It is late by some ms; five slots would be the
+    // freeze.
+    EXPECT_EQ(lines_late_by(daemon.log_text(), 100), 1) << "one line for the whole burst: " << daemon.log_text();
 }
 
 TEST(Faults, AThreadThatNeverSleepsEndsItWithinASecond) {
