@@ -201,8 +201,8 @@ void BakeContext::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
 /// What sees the sky, mesh by mesh; empty where light is not measured, and where objects stay whole.
 std::vector<SkySides> BakeContext::find_sides(const std::vector<Geometry>& geometries) const {
     if (!rays || options.whole_objects) return std::vector<SkySides>(geometries.size());
-    std::vector<MeshInPlaces> meshes;
-    for (const Geometry& geometry : geometries) meshes.push_back({&geometry, {}});
+    std::vector<MeshInPlaces> meshes(geometries.size());
+    for (std::size_t m = 0; m < meshes.size(); ++m) meshes[m].geometry = &geometries[m];
     for (const PlacedObject& object : objects) meshes[object.mesh].places.push_back(object.world);
     return find_scene_sides(meshes, model, *rays, progress);
 }
