@@ -149,4 +149,11 @@ inline std::vector<model::Index> holes(const Engine& engine, const Pose& pose) {
     return found;
 }
 
+/// Along the edge of the forest, looking in, at 1.4 m/s.
+inline Pose along(const Engine& engine, int frame) {
+    Pose pose = forest_pose(engine);
+    pose.position.x += 1.4 / 30 * frame;
+    return pose;
+}
+
 }  // namespace surefoot::test

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -126,6 +127,32 @@ TEST(RoomSides, WhatOneSidedPartsTurnAwayFromTheEyeNeedsNoSun) {
     for (std::size_t v = 0; v < 4; ++v) turned.model.vertices[v].normal[1] = 127;
     EXPECT_TRUE(turned.sides().shows_no_sky(0, vec3(3, 0.1F, 0))) << "triangles tell what is drawn, not normals";
     EXPECT_FALSE(turned.sides().shows_no_sky(0, vec3(3, -0.1F, 0)));
+}
+
+/// In mirrored places the device takes the other winding for the front. Seen from an eye, that is the same side.
+TEST(RoomSides, MirroredPlacesTurnTheSameTrianglesAway) {
+    Squares squares(false);
+    squares.part().square(vec3(0, -1, 0), vec3(0), false, true).square(vec3(1, 0, 0), vec3(0), true, true);
+    const RoomSides sides = squares.sides();
+    int drawn = 0, turned_away = 0;
+    for (const bool mirrored : {false, true}) {
+        const mat3 linear(vec3(0, 0, mirrored ? -2 : 2), vec3(0, 1.5F, 0), vec3(-3, 0, 0));
+        ASSERT_EQ(glm::determinant(linear) < 0, mirrored);
+        const dvec3 origin(7, 8, 9);
+        std::array<dvec3, 3> corner;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vertex& v = squares.model.vertices[squares.model.indices[k]];
+            corner[k] = origin + dmat3(linear) * dvec3(v.position[0], v.position[1], v.position[2]);
+        }
+        const dvec3 normal = (mirrored ? -1.0 : 1.0) * glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+        for (int i = 0; i < 400; ++i) {
+            const dvec3 eye = origin + dvec3(i % 7 - 3, i % 11 - 5.5, i % 13 - 6);
+            const bool is_drawn = glm::dot(normal, eye - corner[0]) > 0;
+            EXPECT_EQ(sides.shows_no_sky(0, eye_in_frame(origin, linear, eye)), !is_drawn) << mirrored << " " << i;
+            ++(is_drawn ? drawn : turned_away);
+        }
+    }
+    EXPECT_GT(std::min(drawn, turned_away), 200);
 }
 
 TEST(RoomSides, RoundThingsAndOtherLightKeepTheSun) {
