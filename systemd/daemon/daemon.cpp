@@ -62,7 +62,7 @@ walk::WalkObserver observer_of(Log& log, ServiceState& state, Bursts& bursts, co
         // After the session has raised its limits.
         if (auto ok = rt::guard_runaways(rt::runaway_limit_us(start.period_ns)); !ok)
             log_lack(log, state, {rt::LackKind::other, ok.error().place + ": " + ok.error().what, ok.error().remedy});
-        state.walking(start.period_ns);
+        state.walking(start.period_ns, start.t0_ns);
     };
     observer.on_record = [&](const rt::FrameRecord& record) {
         state.count(record);

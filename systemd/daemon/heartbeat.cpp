@@ -12,10 +12,10 @@ void Heartbeat::opening(std::int64_t now_ns, std::int64_t open_limit_ns) {
     stalled_ = false;
 }
 
-void Heartbeat::frames_begin(std::int64_t now_ns, std::int64_t period_ns) {
+void Heartbeat::frames_begin(std::int64_t first_due_ns, std::int64_t period_ns) {
     open_until_ns_ = 0;
     period_ns_ = period_ns;
-    moved_ns_ = now_ns;
+    moved_ns_ = first_due_ns;
 }
 
 // A third of the timeout, so that one late ping is no death; never so short that a slow rate looks like a stall.

@@ -20,7 +20,8 @@ public:
 
     /// Until frames_begin() a model is opened and no frame can come. Pings go on for at most open_limit_ns.
     void opening(std::int64_t now_ns, std::int64_t open_limit_ns);
-    void frames_begin(std::int64_t now_ns, std::int64_t period_ns);
+    /// first_due_ns: of the first frame. It may lie ahead by more than a second, since a walk rehearses its first view.
+    void frames_begin(std::int64_t first_due_ns, std::int64_t period_ns);
 
     /// Many times a second. frames: run so far, never less than before.
     Beat look(std::int64_t now_ns, std::uint64_t frames);

@@ -7,6 +7,8 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "rt/clock/clock.hpp"
 #include "rt/threads/placement.hpp"
 #include "rt/threads/runaway.hpp"
@@ -129,7 +131,7 @@ void Service::notify_systemd(std::int64_t now_ns) {
             heartbeat_.opening(now_ns, facts.open_limit_ns);
             send_status(fmt::format("EXTEND_TIMEOUT_USEC={}\n", extend_us));
         } else if (facts.phase == Phase::walking) {
-            heartbeat_.frames_begin(now_ns, facts.period_ns);
+            heartbeat_.frames_begin(std::max(now_ns, facts.first_due_ns), facts.period_ns);
         }
     }
     if (facts.phase == Phase::opening && now_ns - notified_ns_ >= extend_every_ns &&

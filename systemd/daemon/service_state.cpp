@@ -46,10 +46,11 @@ void ServiceState::open(const config::Settings& settings) {
     stalled.store(false);
 }
 
-void ServiceState::walking(std::int64_t period_ns) {
+void ServiceState::walking(std::int64_t period_ns, std::int64_t first_due_ns) {
     const MutexLock lock(mutex_);
     facts_.phase = Phase::walking;
     facts_.period_ns = period_ns;
+    facts_.first_due_ns = first_due_ns;
 }
 
 void ServiceState::count(const rt::FrameRecord& record) {

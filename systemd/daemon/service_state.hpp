@@ -20,8 +20,9 @@ enum class Phase : std::uint8_t { opening, walking, stopping };
 /// A copy of all that STATUS= speaks of.
 struct Facts {
     Phase phase = Phase::opening;
-    std::string model, in_short;  ///< in_short: rate, size, backend
-    std::int64_t period_ns = 0;   ///< of the walk that runs or starts
+    std::string model, in_short;    ///< in_short: rate, size, backend
+    std::int64_t period_ns = 0;     ///< of the walk that runs or starts
+    std::int64_t first_due_ns = 0;  ///< of its first frame, monotonic, once it walks
     std::int64_t open_limit_ns = 0;
     std::uint64_t walk_frames = 0;                      ///< of this walk
     std::uint64_t frames = 0, misses = 0, skipped = 0;  ///< since the daemon's start
@@ -44,7 +45,7 @@ public:
 
     // The session's.
     void open(const config::Settings& settings);
-    void walking(std::int64_t period_ns);
+    void walking(std::int64_t period_ns, std::int64_t first_due_ns);
     void count(const rt::FrameRecord& record);
     /// Adds a lack of this walk. True if it is new in this process and must be logged.
     bool lacks(const rt::Lack& lack);

@@ -65,6 +65,15 @@ TEST(Heartbeat, OpeningIsTrustedForAsLongAsItMayTake) {
     EXPECT_GE(t.pings, 1);
 }
 
+TEST(Heartbeat, WhileTheFirstFrameIsNotDueNothingStalls) {
+    Time t{Heartbeat(4 * second, period)};
+    t.heartbeat.frames_begin(3 * second / 2, period);
+    t.pass(2, false);
+    EXPECT_EQ(t.stalls, 0);
+    t.pass(3, false);
+    EXPECT_EQ(t.stalls, 1) << "it did not come";
+}
+
 TEST(Heartbeat, WithoutAWatchdogStallsAreReportedAllTheSame) {
     Time t{Heartbeat(0, period)};
     t.heartbeat.frames_begin(0, period);
