@@ -8,23 +8,10 @@
 
 #include "render/cache/scene_boxes.hpp"
 #include "render/model/view.hpp"
+#include "tests/cache/row.hpp"
 
 namespace surefoot::cache {
 namespace {
-
-/// Eight leaves beside each other, 100 m together.
-model::Model eight_leaves() {
-    model::Model model;
-    model.nodes.resize(9);
-    model.nodes[0].child_count = 8;
-    model.nodes[0].first_child = 1;
-    for (model::Index n = 1; n < 9; ++n) {
-        model.nodes[n].parent = 0;
-        model.nodes[n].box = {dvec3(12.5 * n, 0, 0), dvec3(12.5 * n + 10, 10, 10)};
-        model.nodes[0].box.grow(model.nodes[n].box);
-    }
-    return model;
-}
 
 /// Leaves of the tree with contents at and below a box.
 std::uint32_t filled_leaves(const SceneBoxes& boxes, Index i) {
@@ -36,7 +23,7 @@ std::uint32_t filled_leaves(const SceneBoxes& boxes, Index i) {
 }
 
 struct FrameBoxes : testing::Test {
-    SceneBoxes boxes = *SceneBoxes::make(eight_leaves(), {}, TreeOptions{4, 3, 0});  // sixteen leaves, in a row
+    SceneBoxes boxes = *SceneBoxes::make(row_of_leaves(), {}, TreeOptions{4, 3, 0});  // sixteen leaves, in a row
     std::vector<FrameBox> frame = std::vector<FrameBox>(boxes.size());
 
     static model::Frustum looking(double towards_z) {

@@ -7,31 +7,18 @@
 #include "render/cache/in_view.hpp"
 #include "render/cache/walk_cache.hpp"
 #include "rt/base/random.hpp"
+#include "tests/cache/row.hpp"
 
 namespace surefoot::cache {
 namespace {
 
 constexpr model::Viewport idle_view{1280, 720};
 
-/// Eight leaves beside each other, 100 m together, each in a box of its own.
-model::Model idle_row() {
-    model::Model model;
-    model.nodes.resize(9);
-    model.nodes[0].child_count = 8;
-    model.nodes[0].first_child = 1;
-    for (model::Index n = 1; n < 9; ++n) {
-        model.nodes[n].parent = 0;
-        model.nodes[n].box = {dvec3(12.5 * n, 0, 0), dvec3(12.5 * n + 10.5, 10, 10)};
-        model.nodes[0].box.grow(model.nodes[n].box);
-    }
-    return model;
-}
-
 /// An eye that walks past the row, 300 m from it.
 class IdleCache : public testing::TestWithParam<bool> {
 protected:
     void SetUp() override {
-        auto boxes = SceneBoxes::make(idle_row(), {}, TreeOptions{8, 2, 0});
+        auto boxes = SceneBoxes::make(row_of_leaves(10.5), {}, TreeOptions{8, 2, 0});
         ASSERT_TRUE(boxes.ok());
         cache_ = WalkCache(std::move(*boxes), {.layers = 24, .surround = GetParam(), .picture_us = 100});
     }

@@ -3,22 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/cache/row.hpp"
+
 namespace surefoot::cache {
 namespace {
-
-/// A row of leaves, 100 m long.
-model::Model row() {
-    model::Model model;
-    model.nodes.resize(9);
-    model.nodes[0].child_count = 8;
-    model.nodes[0].first_child = 1;
-    for (model::Index n = 1; n < 9; ++n) {
-        model.nodes[n].parent = 0;
-        model.nodes[n].box = {dvec3(12.5 * n, 0, 0), dvec3(12.5 * n + 10, 10, 10)};
-        model.nodes[0].box.grow(model.nodes[n].box);
-    }
-    return model;
-}
 
 CacheOffer offer_of(Index box, std::uint32_t texels) {
     CacheOffer offer;
@@ -30,7 +18,7 @@ CacheOffer offer_of(Index box, std::uint32_t texels) {
 class WalkCacheRoom : public ::testing::Test {
 protected:
     void SetUp() override {
-        auto boxes = SceneBoxes::make(row(), {});
+        auto boxes = SceneBoxes::make(row_of_leaves(), {});
         ASSERT_TRUE(boxes.ok());
         cache_ = WalkCache(std::move(*boxes), {.layers = 1, .kept_frames = 2});
     }
